@@ -1,0 +1,2 @@
+//! The laboratory: scenes, ray-traced truth, metrics, renderers and reports (feature `lab`).
+pub mod scene;

@@ -1,0 +1,3 @@
+//! antumbra: real-time shadow mapping.
+#[cfg(feature = "lab")]
+pub mod lab;
