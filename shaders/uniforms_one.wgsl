@@ -1,0 +1,3 @@
+struct AntumbraUniforms {
+    view: AntumbraView,
+}

@@ -1,0 +1,26 @@
+//! The footprint of a texel in the picture.
+//!
+//! # References
+//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: error m = texel over pixel.
+//! - `MATH.md` section 8.
+
+use glam::DVec3;
+
+use crate::camera::Camera;
+use crate::frame::Footprint;
+
+/// Pixels per texel of a uniform map over a body: texel size over pixel size at the eye depth, at its vertices.
+///
+/// Exact for surfaces that face both the light and the camera. O(vertices).
+pub(crate) fn footprint(camera: &Camera, vertices: &[DVec3], origin: DVec3, texel: f64) -> (Footprint, [f32; 2]) {
+    let (near, far) = camera.projection.depth_range();
+    let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for vertex in vertices {
+        let depth = camera.eye_depth(*vertex, origin).clamp(near, far);
+        nearest = nearest.min(depth);
+        farthest = farthest.max(depth);
+    }
+    let rows = f64::from(camera.viewport.y);
+    let pixels = |depth: f64| (texel * rows / camera.projection.height_at(depth)) as f32;
+    (Footprint { min: pixels(farthest), max: pixels(nearest) }, [nearest as f32, farthest as f32])
+}

@@ -1,0 +1,473 @@
+//! The camera: where it stands, what it sees, and how to read both out of an engine's matrices.
+
+use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, UVec2};
+
+use crate::error::{FitError, finite};
+
+/// A camera. World and view space are right-handed; the view looks along −z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// View space to world space: a right-handed rotation and a translation, in f64 so that worlds may be large.
+    pub world_from_view: DMat4,
+    /// What it sees.
+    pub projection: Projection,
+    /// Size of its picture in pixels, each 1 to 65536: errors are predicted in pixels of it, and nothing else uses it.
+    pub viewport: UVec2,
+}
+
+/// The shape of a view volume. Depths are eye depths: distances along the view direction, world units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// A frustum from the eye. The four numbers are tangents of the angles to its sides: for a symmetric frustum of
+    /// vertical field of view θ and aspect a, `up = tan(θ/2) = −down`, `right = a·up = −left`.
+    Perspective {
+        /// Tangent to the left side; less than `right`.
+        left: f64,
+        /// Tangent to the right side.
+        right: f64,
+        /// Tangent to the lower side; less than `up`.
+        down: f64,
+        /// Tangent to the upper side.
+        up: f64,
+        /// Nearest eye depth, greater than 0.
+        near: f64,
+        /// Farthest eye depth, greater than `near`; `f64::INFINITY` is legal.
+        far: f64,
+    },
+    /// A box. The four numbers are distances from the view axis, world units.
+    Orthographic {
+        /// Left side; less than `right`.
+        left: f64,
+        /// Right side.
+        right: f64,
+        /// Lower side; less than `up`.
+        down: f64,
+        /// Upper side.
+        up: f64,
+        /// Nearest eye depth; may be negative.
+        near: f64,
+        /// Farthest eye depth, greater than `near`, finite.
+        far: f64,
+    },
+}
+
+/// The depth range of an engine's clip space, which its projection matrix alone does not tell: the `[-1, 1]` matrix of
+/// a frustum from 1 to 100 *is* the `[0, 1]` matrix of one from 1.98 to 100.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClipDepth {
+    /// wgpu, Vulkan, Direct3D, Metal.
+    ZeroToOne,
+    /// OpenGL, WebGL.
+    MinusOneToOne,
+    /// Not known: takes the larger of the two frusta, which contains the other, so that no shadow is lost.
+    Unknown,
+}
+
+/// Picture assumed by constructors that are given none: full HD, the commonest size. Fewer pixels make predictions of
+/// the error smaller, more make them larger; matrices do not depend on it.
+pub const DEFAULT_VIEWPORT: UVec2 = UVec2::new(1920, 1080);
+
+/// How far a camera's axes may be from orthonormal, as the largest entry of `RᵀR − 1`. f32 matrices that were multiplied
+/// a few times stay below 1e-5; a scale of 1 % shows as 2e-2. Smaller refuses cameras that engines do send, larger lets a
+/// scaled view through, whose eye depths would be wrong.
+const RIGID_TOLERANCE: f64 = 1e-3;
+
+impl Camera {
+    /// A symmetric perspective camera with the default viewport.
+    ///
+    /// `fov_y` is the full vertical angle in radians, 0 to π; `aspect` is width over height.
+    #[must_use]
+    pub fn perspective(world_from_view: DMat4, fov_y: f64, aspect: f64, near: f64, far: f64) -> Self {
+        let up = (0.5 * fov_y).tan();
+        let right = up * aspect;
+        let projection = Projection::Perspective { left: -right, right, down: -up, up, near, far };
+        Self { world_from_view, projection, viewport: DEFAULT_VIEWPORT }
+    }
+
+    /// `world_from_view` of a camera at `eye` that looks at `target`; `up` may be any direction that is not along the view.
+    /// Entries are NaN where the directions do not determine a frame, which [`fit`](crate::ShadowTechnique::fit) refuses.
+    #[must_use]
+    pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
+        let back = (eye - target).normalize();
+        let right = up.cross(back).normalize();
+        DMat4::from_cols(right.extend(0.0), back.cross(right).extend(0.0), back.extend(0.0), eye.extend(1.0))
+    }
+
+    /// Reads a camera out of an engine's matrices (f64).
+    ///
+    /// Recognised: perspective (`w = −z`) and orthographic projections; standard and reversed depth; finite and infinite
+    /// far; off-centre and jittered frusta; mirrored x or y (flipped clip space). The projection may carry any positive
+    /// scale.
+    ///
+    /// # Errors
+    /// [`FitError::NotAProjection`] names the entry that rules the matrix out; other errors name `world_from_view` or the
+    /// recovered plane.
+    pub fn from_matrices(world_from_view: DMat4, clip_from_view: DMat4, depth: ClipDepth) -> Result<Self, FitError> {
+        Self::recognise(world_from_view, clip_from_view, depth, f64::EPSILON)
+    }
+
+    /// [`from_matrices`](Self::from_matrices) for f32 matrices: far planes that f32 cannot tell from infinity are infinite.
+    ///
+    /// # Errors
+    /// As [`from_matrices`](Self::from_matrices).
+    pub fn from_matrices_f32(world_from_view: Mat4, clip_from_view: Mat4, depth: ClipDepth) -> Result<Self, FitError> {
+        Self::recognise(world_from_view.as_dmat4(), clip_from_view.as_dmat4(), depth, f64::from(f32::EPSILON))
+    }
+
+    fn recognise(world_from_view: DMat4, clip_from_view: DMat4, depth: ClipDepth, ulp: f64) -> Result<Self, FitError> {
+        let projection = Projection::recognise(clip_from_view, depth, ulp)?;
+        let camera = Self { world_from_view, projection, viewport: DEFAULT_VIEWPORT };
+        camera.validate()?;
+        Ok(camera)
+    }
+
+    /// The position of the eye (the origin of view space), world space.
+    #[must_use]
+    pub fn eye(&self) -> DVec3 {
+        self.world_from_view.w_axis.truncate()
+    }
+
+    /// The direction of view, unit length up to the tolerance of the matrix.
+    #[must_use]
+    pub fn forward(&self) -> DVec3 {
+        -self.world_from_view.z_axis.truncate()
+    }
+
+    /// Checks every field.
+    pub(crate) fn validate(&self) -> Result<(), FitError> {
+        let entries = self.world_from_view.to_cols_array();
+        for value in entries {
+            finite("camera.world_from_view", value)?;
+        }
+        if self.world_from_view.row(3) != DVec4::W {
+            return Err(FitError::NotRigid { field: "camera.world_from_view", deviation: f64::INFINITY });
+        }
+        let rotation = DMat3::from_mat4(self.world_from_view);
+        let gram = rotation.transpose() * rotation - DMat3::IDENTITY;
+        let deviation = gram.to_cols_array().into_iter().fold(0.0_f64, |worst, entry| worst.max(entry.abs()));
+        if deviation > RIGID_TOLERANCE {
+            return Err(FitError::NotRigid { field: "camera.world_from_view", deviation });
+        }
+        let determinant = rotation.determinant();
+        if determinant < 0.0 {
+            return Err(FitError::NotRigid { field: "camera.world_from_view", deviation: determinant });
+        }
+        for pixels in self.viewport.to_array() {
+            if !(1..=65_536).contains(&pixels) {
+                let value = f64::from(pixels);
+                return Err(FitError::OutOfRange { field: "camera.viewport", value, legal: "1 to 65536 pixels" });
+            }
+        }
+        self.projection.validate()
+    }
+
+    /// Corners of the view volume between two eye depths, in render space (world − `origin`), numbered by bits as
+    /// `Convex::hexahedron` wants them. Corners at infinite depth are directions (w = 0).
+    pub(crate) fn corners(&self, near: f64, far: f64, origin: DVec3) -> [DVec4; 8] {
+        let rotation = DMat3::from_mat4(self.world_from_view);
+        let eye = self.eye() - origin;
+        let (left, right, down, up, spreads) = self.projection.sides();
+        core::array::from_fn(|bits| {
+            let x = if bits & 1 == 0 { left } else { right };
+            let y = if bits & 2 == 0 { down } else { up };
+            let depth = if bits & 4 == 0 { near } else { far };
+            if !depth.is_finite() {
+                return (rotation * DVec3::new(x, y, -1.0)).normalize().extend(0.0);
+            }
+            let spread = if spreads { depth } else { 1.0 };
+            (eye + rotation * DVec3::new(x * spread, y * spread, -depth)).extend(1.0)
+        })
+    }
+
+    /// Eye depth of a point of render space.
+    pub(crate) fn eye_depth(&self, position: DVec3, origin: DVec3) -> f64 {
+        (position - (self.eye() - origin)).dot(self.forward())
+    }
+}
+
+impl Projection {
+    /// Nearest and farthest eye depth.
+    #[must_use]
+    pub fn depth_range(&self) -> (f64, f64) {
+        match *self {
+            Self::Perspective { near, far, .. } | Self::Orthographic { near, far, .. } => (near, far),
+        }
+    }
+
+    /// Left, right, down, up, and whether they grow with depth.
+    fn sides(&self) -> (f64, f64, f64, f64, bool) {
+        match *self {
+            Self::Perspective { left, right, down, up, .. } => (left, right, down, up, true),
+            Self::Orthographic { left, right, down, up, .. } => (left, right, down, up, false),
+        }
+    }
+
+    /// Height of the picture in world units at an eye depth.
+    pub(crate) fn height_at(&self, depth: f64) -> f64 {
+        let (_, _, down, up, spreads) = self.sides();
+        if spreads { (up - down) * depth } else { up - down }
+    }
+
+    fn validate(&self) -> Result<(), FitError> {
+        let (left, right, down, up, perspective) = self.sides();
+        let (near, far) = self.depth_range();
+        finite("camera.projection.left", left)?;
+        finite("camera.projection.right", right)?;
+        finite("camera.projection.down", down)?;
+        finite("camera.projection.up", up)?;
+        finite("camera.projection.near", near)?;
+        ordered("camera.projection.left", left, "camera.projection.right", right, "left < right")?;
+        ordered("camera.projection.down", down, "camera.projection.up", up, "down < up")?;
+        if perspective {
+            if !(near > 0.0) {
+                let field = "camera.projection.near";
+                return Err(FitError::OutOfRange { field, value: near, legal: "greater than 0 (perspective)" });
+            }
+            if far.is_nan() {
+                return Err(FitError::NotFinite { field: "camera.projection.far", value: far });
+            }
+        } else {
+            finite("camera.projection.far", far)?;
+        }
+        ordered("camera.projection.near", near, "camera.projection.far", far, "near < far")
+    }
+
+    /// Reads the planes out of a projection matrix; `ulp` is the relative precision of its entries.
+    fn recognise(clip_from_view: DMat4, depth: ClipDepth, ulp: f64) -> Result<Self, FitError> {
+        for value in clip_from_view.to_cols_array() {
+            finite("clip_from_view", value)?;
+        }
+        // Row w decides: (0, 0, -s, 0) is a perspective, (0, 0, 0, s) an orthographic projection.
+        let row_w = clip_from_view.row(3);
+        let (scale, perspective) = if row_w.z < 0.0 { (-row_w.z, true) } else { (row_w.w, false) };
+        let expected = if perspective { DVec4::new(0.0, 0.0, -scale, 0.0) } else { DVec4::new(0.0, 0.0, 0.0, scale) };
+        if let Some(column) = (0..4).find(|&column| row_w[column] != expected[column]) {
+            return Err(not_a_projection(
+                3 + 4 * column,
+                row_w[column],
+                "w = -z (perspective) or w = 1 (orthographic)",
+            ));
+        }
+        if !(scale > 0.0) {
+            return Err(not_a_projection(15, scale, "w = -z (perspective) or w = 1 (orthographic)"));
+        }
+        let ndc = clip_from_view * (1.0 / scale);
+        reject_shear(&ndc)?;
+        let (near, far) = recognise_depth(ndc.z_axis.z, ndc.w_axis.z, perspective, depth, ulp)?;
+        // Sides: where the picture's coordinates reach -1 and 1.
+        let shift = if perspective { ndc.z_axis } else { -ndc.w_axis };
+        let side = |sign: f64, shift: f64, scale: f64| (sign + shift) / scale;
+        let (x0, x1) = (side(-1.0, shift.x, ndc.x_axis.x), side(1.0, shift.x, ndc.x_axis.x));
+        let (y0, y1) = (side(-1.0, shift.y, ndc.y_axis.y), side(1.0, shift.y, ndc.y_axis.y));
+        let (left, right, down, up) = (x0.min(x1), x0.max(x1), y0.min(y1), y0.max(y1));
+        Ok(if perspective {
+            Self::Perspective { left, right, down, up, near, far }
+        } else {
+            Self::Orthographic { left, right, down, up, near, far }
+        })
+    }
+}
+
+fn ordered(lower: &'static str, a: f64, upper: &'static str, b: f64, legal: &'static str) -> Result<(), FitError> {
+    if a < b { Ok(()) } else { Err(FitError::NotOrdered { lower, lower_value: a, upper, upper_value: b, legal }) }
+}
+
+fn not_a_projection(entry: usize, value: f64, legal: &'static str) -> FitError {
+    FitError::NotAProjection { field: "clip_from_view", entry, value, legal }
+}
+
+/// x may depend on x, z and 1 only, y on y, z and 1, z on z and 1; and neither picture axis may be flat.
+fn reject_shear(ndc: &DMat4) -> Result<(), FitError> {
+    for (entry, value) in [(1, ndc.x_axis.y), (2, ndc.x_axis.z), (4, ndc.y_axis.x), (6, ndc.y_axis.z)] {
+        if value != 0.0 {
+            return Err(not_a_projection(entry, value, "0 (no shear, no oblique near plane)"));
+        }
+    }
+    for (entry, value) in [(0, ndc.x_axis.x), (5, ndc.y_axis.y)] {
+        if value == 0.0 {
+            return Err(not_a_projection(entry, value, "not 0"));
+        }
+    }
+    Ok(())
+}
+
+/// Near and far from the depth row `z_ndc = a·z + b·1` (before division by −z for a perspective).
+///
+/// Perspective: `z_ndc(ζ) = −a + b/ζ`; orthographic: `z_ndc(ζ) = −a·ζ + b`. It falls with ζ when depth is reversed.
+fn recognise_depth(a: f64, b: f64, perspective: bool, depth: ClipDepth, ulp: f64) -> Result<(f64, f64), FitError> {
+    let reversed = if perspective { b > 0.0 } else { a > 0.0 };
+    let at = |value: f64| if perspective { b / (value + a) } else { (b - value) / a };
+    let plane = |value: f64| {
+        // value + a is lost in rounding: the depth is reached at infinity only.
+        let lost = perspective && (value + a).abs() <= 4.0 * ulp * value.abs().max(a.abs());
+        if lost { f64::INFINITY } else { at(value) }
+    };
+    let low_value = if depth == ClipDepth::ZeroToOne { 0.0 } else { -1.0 };
+    let (mut near, far) = if reversed { (plane(1.0), plane(low_value)) } else { (plane(low_value), plane(1.0)) };
+    let mut far = if far < 0.0 && perspective { f64::INFINITY } else { far };
+    if depth == ClipDepth::Unknown {
+        // The other reading: near differs under standard depth, far under reversed depth. Keep the larger frustum.
+        let other = plane(0.0);
+        if reversed {
+            far = if other < 0.0 { f64::INFINITY } else { far.max(other) };
+        } else {
+            near = near.min(other);
+        }
+    }
+    if !near.is_finite() || (perspective && !(near > 0.0)) {
+        return Err(not_a_projection(10, a, "a depth row whose near plane is in front of the eye"));
+    }
+    if !(near < far) {
+        return Err(not_a_projection(14, b, "a depth row with near < far"));
+    }
+    Ok((near, far))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn perspective_matrix(sides: [f64; 4], near_value: f64, far_value: f64, near: f64, far: f64) -> DMat4 {
+        let [left, right, down, up] = sides;
+        // −a + b/near = near_value, −a + b/far = far_value (1/∞ = 0).
+        let inverse_far = if far.is_finite() { 1.0 / far } else { 0.0 };
+        let b = (near_value - far_value) / (1.0 / near - inverse_far);
+        let a = b * inverse_far - far_value;
+        DMat4::from_cols(
+            DVec4::new(2.0 / (right - left), 0.0, 0.0, 0.0),
+            DVec4::new(0.0, 2.0 / (up - down), 0.0, 0.0),
+            DVec4::new((right + left) / (right - left), (up + down) / (up - down), a, -1.0),
+            DVec4::new(0.0, 0.0, b, 0.0),
+        )
+    }
+
+    fn close(a: f64, b: f64, tolerance: f64) -> bool {
+        a == b || (a - b).abs() <= tolerance * b.abs()
+    }
+
+    #[test]
+    fn an_orthographic_projection_is_recognised() {
+        for (near_value, far_value, depth) in [
+            (0.0, 1.0, ClipDepth::ZeroToOne),
+            (1.0, 0.0, ClipDepth::ZeroToOne),
+            (-1.0, 1.0, ClipDepth::MinusOneToOne),
+            (1.0, -1.0, ClipDepth::MinusOneToOne),
+        ] {
+            let (near, far) = (-3.0, 50.0);
+            let slope = (far_value - near_value) / (far - near);
+            let clip_from_view = DMat4::from_cols(
+                DVec4::new(2.0 / 7.0, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, -0.5, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, -slope, 0.0),
+                DVec4::new(-3.0 / 7.0, 0.0, near_value - slope * near, 1.0),
+            );
+            let camera = Camera::from_matrices(DMat4::IDENTITY, clip_from_view, depth).unwrap();
+            let Projection::Orthographic { left, right, down, up, near: n, far: f } = camera.projection else {
+                panic!()
+            };
+            for (found, expected) in [(left, -2.0), (right, 5.0), (down, -2.0), (up, 2.0), (n, near), (f, far)] {
+                assert!(close(found, expected, 1e-12), "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn matrices_that_are_no_projections_are_refused_by_entry() {
+        let good = perspective_matrix([-1.0, 1.0, -1.0, 1.0], 0.0, 1.0, 1.0, 100.0);
+        let entry = |clip_from_view| match Camera::from_matrices(DMat4::IDENTITY, clip_from_view, ClipDepth::ZeroToOne)
+        {
+            Err(FitError::NotAProjection { entry, .. }) => entry,
+            other => panic!("{other:?}"),
+        };
+        let mut left_handed = good;
+        left_handed.z_axis.w = 1.0;
+        assert_eq!(entry(left_handed), 11);
+        let mut sheared = good;
+        sheared.x_axis.y = 0.1;
+        assert_eq!(entry(sheared), 1);
+        assert_eq!(entry(DMat4::ZERO), 15);
+        let mut oblique = good;
+        oblique.y_axis.z = 0.1;
+        assert_eq!(entry(oblique), 6);
+        let mut behind = good;
+        behind.w_axis.z = 0.0;
+        assert!([10, 14].contains(&entry(behind)));
+    }
+
+    #[test]
+    fn an_unknown_clip_depth_gives_the_larger_frustum() {
+        let sides = [-1.0, 1.0, -1.0, 1.0];
+        let gl = perspective_matrix(sides, -1.0, 1.0, 1.0, 100.0);
+        let wgpu = perspective_matrix(sides, 0.0, 1.0, 1.0, 100.0);
+        let near =
+            |m| Camera::from_matrices(DMat4::IDENTITY, m, ClipDepth::Unknown).unwrap().projection.depth_range().0;
+        assert!(close(near(gl), 1.0, 1e-12));
+        assert!(near(wgpu) < 1.0 && near(wgpu) > 0.4);
+        let reversed = perspective_matrix(sides, 1.0, 0.0, 1.0, 100.0);
+        let range =
+            Camera::from_matrices(DMat4::IDENTITY, reversed, ClipDepth::Unknown).unwrap().projection.depth_range();
+        assert!(close(range.0, 1.0, 1e-12) && range.1 >= 100.0);
+    }
+
+    #[test]
+    fn cameras_that_are_not_rigid_are_refused() {
+        let camera = |world_from_view| Camera::perspective(world_from_view, 1.0, 1.0, 0.1, 10.0).validate();
+        assert!(camera(DMat4::IDENTITY).is_ok());
+        for broken in [
+            DMat4::from_scale(DVec3::splat(1.01)),
+            DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0)),
+            DMat4::ZERO,
+            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, DVec4::new(0.0, 0.0, 0.0, 2.0)),
+        ] {
+            assert!(
+                matches!(camera(broken), Err(FitError::NotRigid { field: "camera.world_from_view", .. })),
+                "{broken:?}"
+            );
+        }
+        assert!(matches!(camera(DMat4::NAN), Err(FitError::NotFinite { .. })));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// Perspective matrices of every convention give back the frustum they were made from.
+        #[test]
+        fn projections_survive_the_round_trip(
+            left in -3.0..1.0_f64, width in 0.01..4.0_f64, down in -3.0..1.0_f64, height in 0.01..4.0_f64,
+            log_near in -4.0..3.0_f64, log_ratio in 0.01..4.0_f64, convention in 0..4_usize, infinite: bool, single: bool,
+            scale in 0.1..10.0_f64, flip: bool,
+        ) {
+            let near = 10.0_f64.powf(log_near);
+            let far = if infinite { f64::INFINITY } else { near * 10.0_f64.powf(log_ratio) };
+            let (near_value, far_value, depth) = [
+                (0.0, 1.0, ClipDepth::ZeroToOne),
+                (1.0, 0.0, ClipDepth::ZeroToOne),
+                (-1.0, 1.0, ClipDepth::MinusOneToOne),
+                (1.0, -1.0, ClipDepth::MinusOneToOne),
+            ][convention];
+            let mut clip_from_view =
+                perspective_matrix([left, left + width, down, down + height], near_value, far_value, near, far) * scale;
+            if flip {
+                clip_from_view.y_axis.y = -clip_from_view.y_axis.y;
+                clip_from_view.z_axis.y = -clip_from_view.z_axis.y;
+            }
+            let camera = if single {
+                Camera::from_matrices_f32(Mat4::IDENTITY, clip_from_view.as_mat4(), depth)
+            } else {
+                Camera::from_matrices(DMat4::IDENTITY, clip_from_view, depth)
+            };
+            let Projection::Perspective { left: l, right: r, down: d, up: u, near: n, far: f } = camera.unwrap().projection
+            else { panic!("not a perspective") };
+            // f32 loses far in proportion to far/near; sides lose what their sum cancels.
+            let ulp = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+            let side = 64.0 * ulp * (1.0 + left.abs() + width + down.abs() + height);
+            prop_assert!((l - left).abs() <= side && (r - left - width).abs() <= side);
+            prop_assert!((d - down).abs() <= side && (u - down - height).abs() <= side);
+            let ratio = if infinite { 1.0 } else { far / near };
+            prop_assert!(close(n, near, 64.0 * ulp * (1.0 + 1.0 / (1.0 - 1.0 / ratio).max(1e-3))) || infinite && close(n, near, 64.0 * ulp));
+            prop_assert!(close(f, far, 64.0 * ulp * ratio * (1.0 + 1.0 / (1.0 - 1.0 / ratio).max(1e-3))) || f == f64::INFINITY && ratio * ulp * 64.0 > 1.0 || infinite && f > 0.01 * near / ulp,
+                "far {f} expected {far}");
+        }
+    }
+}

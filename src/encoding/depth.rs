@@ -1,0 +1,189 @@
+//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `pcf_*.wgsl` and `visibility_one.wgsl`.
+//!
+//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs` holds
+//! them together on an adapter. The software renderer of the lab runs on them.
+//!
+//! # References
+//! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987 (percentage-closer filtering).
+//! - `MATH.md` section 7.
+
+use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use crate::frame::{Pcf, ViewUniforms};
+
+/// A depth map that can be compared with, as a comparison sampler does it.
+pub trait CompareMap {
+    /// Size in texels.
+    fn size(&self) -> UVec2;
+    /// Bilinear share of the four texels around `uv` whose depth is at least `depth`; coordinates clamp to the edge.
+    fn sample_compare(&self, uv: Vec2, depth: f32) -> f32;
+}
+
+/// A depth map in memory: row 0 on top, depth 0 nearest to the light.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthMap<'a> {
+    /// Size in texels.
+    pub size: UVec2,
+    /// Depths in [0, 1], row by row.
+    pub depth: &'a [f32],
+}
+
+impl CompareMap for DepthMap<'_> {
+    fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    fn sample_compare(&self, uv: Vec2, depth: f32) -> f32 {
+        let at = uv * self.size.as_vec2() - 0.5;
+        let base = at.floor();
+        // Samplers keep eight bits of the fraction.
+        let fraction = ((at - base) * SUB_TEXELS).round() / SUB_TEXELS;
+        let last = self.size.as_ivec2() - 1;
+        let lit = |dx: i32, dy: i32| {
+            let texel = (base.as_ivec2() + glam::IVec2::new(dx, dy)).clamp(glam::IVec2::ZERO, last).as_uvec2();
+            let stored = self.depth[(texel.y * self.size.x + texel.x) as usize];
+            if depth <= stored { 1.0 } else { 0.0 }
+        };
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let above = mix(lit(0, 0), lit(1, 0), fraction.x);
+        let below = mix(lit(0, 1), lit(1, 1), fraction.x);
+        mix(above, below, fraction.y)
+    }
+}
+
+/// Steps between texels that samplers resolve (8 bits, the least that Vulkan and Direct3D 12 require).
+const SUB_TEXELS: f32 = 256.0;
+
+/// Where to look, and what to compare with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lookup {
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Light depth of the receiver after its bias.
+    pub depth: f32,
+    /// Change of that depth over one texel step in u and in v, along the receiver's plane.
+    pub slope: Vec2,
+}
+
+/// Twin of `antumbra_lookup`.
+#[must_use]
+pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach: f32, tap_reach: f32) -> Lookup {
+    let (texel_u, texel_v) = (Vec4::from_array(view.texel_u), Vec4::from_array(view.texel_v));
+    let [constant, grazing, weight, manual] = view.bias;
+    let depth_from_render = Vec4::from_array(view.depth_from_render);
+    let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal)) * weight;
+    let step = fall.x.abs() + fall.y.abs();
+    let cosine = -depth_from_render.xyz().dot(normal) * texel_v.w;
+    let held = cosine.max(grazing);
+    let along_normal = reach * step * (1.0 - cosine.max(0.0) / held) + manual;
+    let depth_per_fall = texel_u.w / held;
+    let at = (position + normal * along_normal).extend(1.0);
+    Lookup {
+        uv: Vec2::new(Vec4::from_array(view.u_from_render).dot(at), Vec4::from_array(view.v_from_render).dot(at)),
+        depth: depth_from_render.dot(at) - tap_reach * step * depth_per_fall - constant,
+        slope: fall * depth_per_fall,
+    }
+}
+
+/// Twin of `antumbra_tap`: one bilinear comparison at `offset` texels, against the receiver's own plane there.
+#[must_use]
+pub fn antumbra_tap(map: &impl CompareMap, look: &Lookup, offset: Vec2) -> f32 {
+    let uv = look.uv + offset / map.size().as_vec2();
+    map.sample_compare(uv, (look.depth + look.slope.dot(offset)).min(1.0))
+}
+
+/// Twin of `antumbra_filter`, for every filter.
+#[must_use]
+pub fn antumbra_filter(filter: Pcf, map: &impl CompareMap, look: &Lookup) -> f32 {
+    let size = map.size().as_vec2();
+    match filter {
+        Pcf::Point => map.sample_compare(((look.uv * size).floor() + 0.5) / size, look.depth.min(1.0)),
+        Pcf::Hardware2x2 => map.sample_compare(look.uv, look.depth.min(1.0)),
+        Pcf::Box3x3 => {
+            let f = fraction(look.uv, size);
+            let first = 1.0 / (2.0 - f) - 1.0 - f;
+            let last = f / (1.0 + f) + 1.0 - f;
+            let lower = antumbra_tap(map, look, first) * (2.0 - f.x)
+                + antumbra_tap(map, look, Vec2::new(last.x, first.y)) * (1.0 + f.x);
+            let upper = antumbra_tap(map, look, Vec2::new(first.x, last.y)) * (2.0 - f.x)
+                + antumbra_tap(map, look, last) * (1.0 + f.x);
+            (lower * (2.0 - f.y) + upper * (1.0 + f.y)) / 9.0
+        }
+        Pcf::Box5x5 => {
+            let f = fraction(look.uv, size);
+            let first = 1.0 / (2.0 - f) - 2.0 - f;
+            let middle = 0.5 - f;
+            let last = f / (1.0 + f) + 2.0 - f;
+            let x = Vec3::new(first.x, middle.x, last.x);
+            let weight = Vec3::new(2.0 - f.x, 2.0, 1.0 + f.x);
+            (antumbra_box_row(map, look, x, weight, first.y) * (2.0 - f.y)
+                + antumbra_box_row(map, look, x, weight, middle.y) * 2.0
+                + antumbra_box_row(map, look, x, weight, last.y) * (1.0 + f.y))
+                / 25.0
+        }
+    }
+}
+
+/// Twin of `antumbra_box_row`: three taps of a row.
+#[must_use]
+pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: Vec3, y: f32) -> f32 {
+    antumbra_tap(map, look, Vec2::new(x.x, y)) * weight.x
+        + antumbra_tap(map, look, Vec2::new(x.y, y)) * weight.y
+        + antumbra_tap(map, look, Vec2::new(x.z, y)) * weight.z
+}
+
+/// Twin of `antumbra_visible`: share of the light that reaches a point of render space.
+#[must_use]
+pub fn antumbra_visible(filter: Pcf, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
+    let look = antumbra_lookup(view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
+    let rect = Vec4::from_array(view.rect);
+    if look.uv.cmplt(rect.xy()).any() || look.uv.cmpgt(rect.zw()).any() {
+        return 1.0;
+    }
+    antumbra_filter(filter, map, &look)
+}
+
+/// Place of a point between texel centres.
+fn fraction(uv: Vec2, size: Vec2) -> Vec2 {
+    let at = uv * size - 0.5;
+    at - at.floor()
+}
+
+/// Twin of `antumbra_caster`.
+#[must_use]
+pub fn antumbra_caster(clip_from_render: glam::Mat4, position: Vec3) -> Vec4 {
+    clip_from_render * position.extend(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A map whose left half is near and right half far.
+    fn half_map(depth: &mut Vec<f32>) -> DepthMap<'_> {
+        depth.clear();
+        depth.extend((0..16 * 16).map(|i| if i % 16 < 8 { 0.25 } else { 0.75 }));
+        DepthMap { size: UVec2::splat(16), depth }
+    }
+
+    proptest! {
+        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and across
+        /// a straight edge it is the box's overlap with the lit half.
+        #[test]
+        fn filters_average(u in 0.3..0.7_f32, v in 0.3..0.7_f32, index in 0..4_usize) {
+            let filter = Pcf::ALL[index];
+            let mut depth = Vec::new();
+            let map = half_map(&mut depth);
+            let at = |depth| antumbra_filter(filter, &map, &Lookup { uv: Vec2::new(u, v), depth, slope: Vec2::ZERO });
+            prop_assert!((at(0.1) - 1.0).abs() < 1e-5);
+            prop_assert!(at(0.9).abs() < 1e-5);
+            let width = match filter { Pcf::Point => 1e-6, Pcf::Hardware2x2 => 1.0, Pcf::Box3x3 => 3.0, Pcf::Box5x5 => 5.0 };
+            let expected = ((u * 16.0 - 8.0) / width + 0.5).clamp(0.0, 1.0);
+            // Samplers keep 8 bits of the position between texels.
+            if filter != Pcf::Point || (u * 16.0 - 8.0).abs() > 1e-3 {
+                prop_assert!((at(0.5) - expected).abs() < 0.01, "{} {}", at(0.5), expected);
+            }
+        }
+    }
+}

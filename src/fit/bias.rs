@@ -1,0 +1,99 @@
+//! Bias from the size of a texel, and from nothing else.
+//!
+//! A texel stores the depth of its centre; a filter reads texels up to its *reach* away. Over that distance the plane of
+//! the receiver falls towards the light by `reach · s · (|n_p| + |n_q|)` measured along its normal, where s is the size of
+//! a texel and n the normal in light space. The receiver is lifted by exactly that: along the light as long as that is
+//! short (which moves no shadow edge), along the normal where the surface grazes the light and the distance along the
+//! light would grow as the tangent.
+//!
+//! # References
+//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|n_x| + |n_y|) / |n_z|, exact; δ = (r + ½) s (|n_x| + |n_y|), bounded.
+
+use glam::{DVec2, DVec3, DVec4};
+
+use crate::error::{FitError, finite};
+use crate::frame::ViewUniforms;
+use crate::light_space::LightSpace;
+use crate::math::space::{Clip, Map, Render};
+
+/// How a receiver is kept from shadowing itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Bias {
+    /// From the texel size, the reach of the filter and the precision of positions. Bounded; needs no tuning.
+    #[default]
+    Automatic,
+    /// By hand, for engines that have tuned theirs. The automatic bias is off; only rounding is still accounted for.
+    Manual {
+        /// Distance along the light, world units, at least 0 and finite.
+        depth_world: f32,
+        /// Distance along the surface normal, in texels (their longer side), at least 0 and finite.
+        normal_texels: f32,
+    },
+}
+
+/// Cosine of incidence below which a receiver is lifted along its normal instead of along the light. At 0.3 (72.5°) the
+/// lift along the light is at most 4.7 texels. Towards 0 it grows as the tangent and shadows of near objects detach;
+/// towards 1 every lift is along the normal and shadow edges shift by up to a texel on slanted ground.
+const GRAZING_COSINE: f32 = 0.3;
+
+/// Rasterisers snap vertices to 1/256 of a texel, which moves a plane by as much; both ends of an edge may move.
+const RASTER_SNAP: f64 = 2.0 / 256.0;
+
+/// Rounding steps between a position and a compared depth: the product with a matrix row (4), interpolation across the
+/// triangle in both passes (2), storing (1), rounded up to a power of two. Fewer shows as acne far from the origin; more
+/// lets light through at contacts, by that many steps of f32.
+const DEPTH_ROUNDINGS: f64 = 8.0;
+
+/// What a view's bias depends on.
+pub(crate) struct BiasInput<'a> {
+    /// Frame of the map.
+    pub(crate) light: &'a LightSpace,
+    /// Size of a texel in (p, q), world units.
+    pub(crate) texel: DVec2,
+    /// Depth range of the map along the light, world units.
+    pub(crate) depth_range: f64,
+    /// Clip space of the map.
+    pub(crate) clip_from_render: &'a Map<Clip, Render>,
+    /// Largest coordinates of receivers, render space, each not negative.
+    pub(crate) reach: DVec3,
+    /// Side of the map, texels.
+    pub(crate) side: f64,
+}
+
+impl Bias {
+    /// Writes the bias of an affine view into its uniforms.
+    pub(crate) fn write(self, input: &BiasInput, uniforms: &mut ViewUniforms) {
+        // What rounding adds: to the texel that is looked up, and to the depth that is compared.
+        let half_ulp = 0.5 * f64::from(f32::EPSILON);
+        let rounding = |row: DVec4| half_ulp * (row.truncate().abs().dot(input.reach) + row.w.abs());
+        let lost_texels =
+            input.side * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))));
+        let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
+        // A texel, as a step across the light that a plane may fall over.
+        let grown = input.texel * (1.0 + RASTER_SNAP + lost_texels);
+        let step = |axis: DVec3, size: f64, last: f64| (axis * size).extend(last).as_vec4().to_array();
+        uniforms.texel_u = step(input.light.p(), grown.x, 1.0 / input.depth_range);
+        uniforms.texel_v = step(input.light.q(), -grown.y, input.depth_range);
+        let (constant, weight, offset) = match self {
+            Self::Automatic => (0.0, 1.0, 0.0),
+            Self::Manual { depth_world, normal_texels } => {
+                (depth_world / input.depth_range as f32, 0.0, normal_texels * input.texel.max_element() as f32)
+            }
+        };
+        uniforms.bias = [lost_depth as f32 + constant, GRAZING_COSINE, weight, offset];
+    }
+}
+
+impl Bias {
+    /// Checks manual values.
+    pub(crate) fn validate(self) -> Result<(), FitError> {
+        let Self::Manual { depth_world, normal_texels } = self else { return Ok(()) };
+        for (field, value) in [("bias.depth_world", depth_world), ("bias.normal_texels", normal_texels)] {
+            let value = finite(field, f64::from(value))?;
+            if value < 0.0 {
+                return Err(FitError::OutOfRange { field, value, legal: "0 or more" });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,6 @@
+//! The stages between a body and a view.
+
+pub(crate) mod bias;
+pub(crate) mod cull;
+pub(crate) mod depth_range;
+pub(crate) mod snap;

@@ -1,0 +1,71 @@
+//! Maps that do not crawl: a window of constant size on a grid that is fixed to the world.
+//!
+//! # References
+//! - Valient, *Stable rendering of cascaded shadow maps*, ShaderX6, 2008: a sphere around the frustum, snapped to texels.
+
+use glam::{DVec2, DVec3};
+
+use crate::camera::{Camera, Projection};
+use crate::light_space::LightSpace;
+use crate::warp::uniform::Window;
+
+/// Steps per doubling in which a snapped window may grow. More steps fit tighter but change the texel size, and so let
+/// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
+const STEPS_PER_OCTAVE: f64 = 16.0;
+
+/// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it stands or looks,
+/// placed on a world-fixed grid of texels. `texels` is the number of texels over its side, at least 2.
+///
+/// `None` when the frustum has no finite sphere, or when the still window of the whole scene is no larger.
+pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, origin: DVec3) -> Option<Window> {
+    let (centre_depth, radius) = bounding_sphere(&camera.projection, far);
+    if !radius.is_finite() {
+        return None;
+    }
+    // One texel more than the sphere, so that snapping cannot cut it.
+    let radius = quantised_up(radius);
+    let texel = 2.0 * radius / (texels - 1.0);
+    let side = texel * texels;
+    if scene.size().max_element() <= side {
+        return None;
+    }
+    // The lower corner, in ray coordinates of the world, on whole texels.
+    let light = scene.light;
+    let centre = camera.eye() + camera.forward() * centre_depth;
+    let grid = light.ray(origin).truncate();
+    let corner = light.ray(centre).truncate() - DVec2::splat(radius);
+    let low = (corner / texel).floor() * texel - grid;
+    Some(Window { light, low, high: low + side })
+}
+
+/// Scene windows grow in steps too, so that a moving object at their border changes the texels seldom.
+pub(crate) fn still(window: &Window, texels: f64, light: &LightSpace, origin: DVec3) -> Window {
+    let size = window.size();
+    let texel = DVec2::new(quantised_up(size.x), quantised_up(size.y)) / (texels - 1.0).max(1.0);
+    let grid = light.ray(origin).truncate();
+    let low = ((window.low + grid) / texel).floor() * texel - grid;
+    Window { light: window.light, low, high: low + texel * texels }
+}
+
+/// The least power of `2^(1/16)` that is not below a size; 0 stays 0.
+fn quantised_up(size: f64) -> f64 {
+    if size > 0.0 { ((size.log2() * STEPS_PER_OCTAVE).ceil() / STEPS_PER_OCTAVE).exp2() } else { size }
+}
+
+/// Eye depth of the centre, on the view axis, and radius of a sphere around the view volume up to `far`.
+fn bounding_sphere(projection: &Projection, far: f64) -> (f64, f64) {
+    match *projection {
+        Projection::Perspective { left, right, down, up, near, .. } => {
+            // Tangent of the widest corner. The sphere through the near and the far corners, or the far corners' circle.
+            let spread = left.abs().max(right.abs()).powi(2) + down.abs().max(up.abs()).powi(2);
+            let centre = (0.5 * (near + far) * (1.0 + spread)).min(far);
+            let corner = |depth: f64| (spread * depth * depth + (depth - centre) * (depth - centre)).sqrt();
+            (centre, corner(far).max(corner(near)))
+        }
+        Projection::Orthographic { left, right, down, up, near, .. } => {
+            let spread = left.abs().max(right.abs()).powi(2) + down.abs().max(up.abs()).powi(2);
+            let half = 0.5 * (far - near);
+            (near + half, (spread + half * half).sqrt())
+        }
+    }
+}

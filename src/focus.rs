@@ -1,0 +1,180 @@
+//! What has to be in the map: the receivers in view that something may shadow, and the casters that may shadow them.
+//!
+//! # References
+//! - Scherzer, *Robust shadow maps for large environments*, section 4.1 and MATH.md section 2: body B and receivers LVS.
+//! - Stamminger & Drettakis, *Perspective shadow maps*, H = M ∩ S ∩ L (MATH.md section 3).
+
+use arrayvec::ArrayVec;
+use glam::{DVec3, DVec4};
+
+use crate::camera::Camera;
+use crate::math::convex::{Convex, HalfSpace, MAX_VERTICES};
+use crate::report::{LeftOut, Part, Why};
+use crate::scene::{Aabb, DepthRange, Scene};
+
+/// A convex body in render space that holds every receiver in view that a caster may shadow.
+#[derive(Clone, Debug)]
+pub(crate) struct FocusBody {
+    /// Its vertices, all finite, at least one.
+    pub(crate) vertices: ArrayVec<DVec3, MAX_VERTICES>,
+    /// What the body does without.
+    pub(crate) left_out: Option<Why>,
+}
+
+/// Bounds are grown by this share of their largest coordinate (as seen from the origin of render space), so that
+/// rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs texels.
+const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
+
+impl FocusBody {
+    /// The receivers of the whole scene that the casters' bounds can shadow, whoever looks: view-independent.
+    pub(crate) fn of_scene(scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
+        nothing_in(scene)?;
+        let receivers = grown(&scene.receivers, origin);
+        Self::shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin)
+    }
+
+    /// The receivers in view: frustum ∩ receivers' bounds ∩ the shadow of the casters' bounds.
+    pub(crate) fn of_view(camera: &Camera, scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
+        nothing_in(scene)?;
+        // The frustum, between the depths that are visible.
+        let DepthRange { near, far } = visible_depth(camera, scene)?;
+        let mut body = Convex::hexahedron(camera.corners(near, far, origin));
+        // Of it, what the receivers' bounds hold.
+        for plane in box_planes(&grown(&scene.receivers, origin)) {
+            body.clip(plane);
+        }
+        if body.is_empty() {
+            return Err(LeftOut { part: Part::Light, why: Why::NoReceiversInView { near, far } });
+        }
+        let mut body = Self::shadowed(body, scene, travel, origin)?;
+        let (_, camera_far) = camera.projection.depth_range();
+        if far < camera_far && body.left_out.is_none() {
+            body.left_out = Some(Why::BeyondVisibleDepth { far });
+        }
+        Ok(body)
+    }
+
+    /// Of a body, what the shadow of the casters' bounds reaches.
+    fn shadowed(mut body: Convex, scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
+        let mut cut = false;
+        for plane in shadow_planes(&grown(&scene.casters, origin), travel) {
+            cut |= body.clip(plane);
+        }
+        let vertices: ArrayVec<DVec3, MAX_VERTICES> = body.points().collect();
+        if vertices.is_empty() {
+            return Err(LeftOut { part: Part::Light, why: Why::NothingCastsHere });
+        }
+        Ok(Self { vertices, left_out: cut.then_some(Why::LitWithoutLookup) })
+    }
+}
+
+fn nothing_in(scene: &Scene) -> Result<(), LeftOut> {
+    if scene.receivers.is_empty() {
+        return Err(LeftOut { part: Part::Light, why: Why::NoReceivers });
+    }
+    if scene.casters.is_empty() {
+        return Err(LeftOut { part: Part::Light, why: Why::NoCasters });
+    }
+    Ok(())
+}
+
+/// The camera's depth range, cut to what the scene says is visible.
+fn visible_depth(camera: &Camera, scene: &Scene) -> Result<DepthRange, LeftOut> {
+    let (near, far) = camera.projection.depth_range();
+    let Some(visible) = scene.visible_depth else { return Ok(DepthRange { near, far }) };
+    let cut = DepthRange { near: near.max(visible.near), far: far.min(visible.far) };
+    if cut.near <= cut.far {
+        return Ok(cut);
+    }
+    Err(LeftOut { part: Part::Light, why: Why::OutsideVisibleDepth { near: visible.near, far: visible.far } })
+}
+
+/// Bounds in render space, grown by the margin.
+fn grown(bounds: &Aabb, origin: DVec3) -> Aabb {
+    let (min, max) = (bounds.min - origin, bounds.max - origin);
+    let margin = BOUNDS_MARGIN * min.abs().max(max.abs()).max_element();
+    Aabb { min: min - margin, max: max + margin }
+}
+
+fn box_corners(bounds: &Aabb) -> [DVec4; 8] {
+    core::array::from_fn(|bits| {
+        let pick = |bit: usize, low: f64, high: f64| if bits & bit == 0 { low } else { high };
+        let (min, max) = (bounds.min, bounds.max);
+        DVec4::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z), 1.0)
+    })
+}
+
+fn box_planes(bounds: &Aabb) -> [HalfSpace; 6] {
+    core::array::from_fn(|index| {
+        let axis = index / 2;
+        let mut normal = DVec3::ZERO;
+        if index % 2 == 0 {
+            normal[axis] = 1.0;
+            normal.extend(-bounds.min[axis])
+        } else {
+            normal[axis] = -1.0;
+            normal.extend(bounds.max[axis])
+        }
+    })
+}
+
+/// The shadow of a box, `{x : x − t·travel ∈ box for a t ≥ 0}`, as half-spaces: the faces where light enters, and the
+/// planes along the light through the box's silhouette (which contain one axis each). At most 3 + 6.
+fn shadow_planes(bounds: &Aabb, travel: DVec3) -> ArrayVec<HalfSpace, 9> {
+    let mut planes = ArrayVec::new();
+    for axis in 0..3 {
+        let mut unit = DVec3::ZERO;
+        unit[axis] = 1.0;
+        // The face where light enters; a face along the light is found below, as a silhouette plane.
+        if travel[axis] > 0.0 {
+            planes.push(unit.extend(-bounds.min[axis]));
+        } else if travel[axis] < 0.0 {
+            planes.push((-unit).extend(bounds.max[axis]));
+        }
+        // The two planes along the light and this axis.
+        if let Some(normal) = travel.cross(unit).try_normalize() {
+            let centre = normal.dot(bounds.centre());
+            let half = normal.abs().dot(bounds.half_size());
+            planes.push(normal.extend(half - centre));
+            planes.push((-normal).extend(half + centre));
+        }
+    }
+    planes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// The shadow of a box against its definition: walk from the point towards the light and look for the box.
+        #[test]
+        fn the_shadow_of_a_box(
+            point in prop::array::uniform3(-3.0..3.0_f64),
+            direction in prop::array::uniform3(prop_oneof![-1.0..1.0_f64, Just(0.0)]),
+        ) {
+            let Some(travel) = DVec3::from_array(direction).try_normalize() else { return Ok(()) };
+            let bounds = Aabb::new(DVec3::new(-1.0, -0.5, -0.2), DVec3::new(0.5, 0.75, 1.0));
+            let point = DVec3::from_array(point);
+            let margin = shadow_planes(&bounds, travel).iter().map(|p| p.dot(point.extend(1.0))).fold(f64::INFINITY, f64::min);
+            // Slab test of the ray towards the light.
+            let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+            for axis in 0..3 {
+                if travel[axis] == 0.0 {
+                    if point[axis] < bounds.min[axis] || point[axis] > bounds.max[axis] { leave = -1.0; }
+                    continue;
+                }
+                let a = (bounds.min[axis] - point[axis]) / -travel[axis];
+                let b = (bounds.max[axis] - point[axis]) / -travel[axis];
+                enter = enter.max(a.min(b));
+                leave = leave.min(a.max(b));
+            }
+            if margin.abs() > 1e-9 && (leave - enter).abs() > 1e-6 {
+                prop_assert_eq!(margin > 0.0, leave >= enter, "margin {} enter {} leave {}", margin, enter, leave);
+            }
+        }
+    }
+}

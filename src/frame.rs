@@ -1,0 +1,236 @@
+//! What a fit gives back: views to draw, uniforms to upload, and an account of what was left out.
+
+use arrayvec::ArrayVec;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
+
+use crate::report::{LeftOut, Part, Why};
+use crate::scene::Aabb;
+
+/// Most views of one light.
+pub const MAX_VIEWS: usize = 8;
+
+/// Most lines of [`ShadowFrame::left_out`]: a plan of 8 views has at most two reasons a view.
+pub const MAX_LEFT_OUT: usize = 2 * MAX_VIEWS;
+
+/// Most planes of a [`CullVolume`].
+pub const MAX_CULL_PLANES: usize = 8;
+
+/// Which shader text a technique needs. Two bytes; compare it with the key a pipeline was built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct WgslKey {
+    /// How the map is filtered.
+    pub filter: Pcf,
+}
+
+/// Percentage-closer filters: compare first, then average.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Pcf {
+    /// The nearest texel alone: one texture sample, hard edges.
+    Point,
+    /// The four nearest texels, bilinearly weighted by the sampler hardware: one texture sample.
+    #[default]
+    Hardware2x2,
+    /// A box three texels wide: 4 texture samples.
+    Box3x3,
+    /// A box five texels wide: 9 texture samples.
+    Box5x5,
+}
+
+impl Pcf {
+    /// All of them, cheapest first.
+    pub const ALL: [Self; 4] = [Self::Point, Self::Hardware2x2, Self::Box3x3, Self::Box5x5];
+
+    /// Distance in texels, along an axis of the map, from a point to the farthest texel centre that its filter reads.
+    /// Point: ½ (the texel the point lies in); bilinear: 1; an n×n box of bilinear samples: (n + 1)/2.
+    #[must_use]
+    pub const fn reach(self) -> f64 {
+        match self {
+            Self::Point => 0.5,
+            Self::Hardware2x2 => 1.0,
+            Self::Box3x3 => 2.0,
+            Self::Box5x5 => 3.0,
+        }
+    }
+
+    /// The same for one sample of the filter, which knows the receiver's plane at its own place.
+    #[must_use]
+    pub const fn tap_reach(self) -> f64 {
+        match self {
+            Self::Point => 0.5,
+            Self::Hardware2x2 | Self::Box3x3 | Self::Box5x5 => 1.0,
+        }
+    }
+
+    /// Name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Hardware2x2 => "pcf2x2",
+            Self::Box3x3 => "pcf3x3",
+            Self::Box5x5 => "pcf5x5",
+        }
+    }
+}
+
+/// Everything one light needs for one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowFrame {
+    /// The maps to draw, in order. None: nothing to shadow, and `left_out` says why.
+    pub views: ArrayVec<ShadowView, MAX_VIEWS>,
+    /// What the receiver shader reads: upload verbatim.
+    pub uniforms: ShadowUniforms,
+    /// The shader text these uniforms are for.
+    pub wgsl: WgslKey,
+    /// What was left out, clamped or replaced, and why.
+    pub left_out: ArrayVec<LeftOut, MAX_LEFT_OUT>,
+    /// The predicted sampling error over all views.
+    pub predicted: Footprint,
+}
+
+impl ShadowFrame {
+    /// A frame in which nothing is shadowed yet: everything reads lit.
+    pub(crate) fn lit(wgsl: WgslKey) -> Self {
+        Self {
+            views: ArrayVec::new(),
+            uniforms: ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] },
+            wgsl,
+            left_out: ArrayVec::new(),
+            predicted: Footprint::NONE,
+        }
+    }
+
+    /// Notes what was left out. The capacity follows from the most reasons a plan can have.
+    pub(crate) fn leave_out(&mut self, part: Part, why: Why) {
+        let _ = self.left_out.try_push(LeftOut { part, why });
+    }
+}
+
+/// One map to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadowView {
+    /// Render space (world − `origin`) to the map's clip space; z is linear in depth for directional light.
+    pub clip_from_render: Mat4,
+    /// Linear light depth in [0, 1] of a render-space position: `dot(depth_from_render, (x, y, z, 1))`.
+    pub depth_from_render: Vec4,
+    /// Where to draw: x, y, width, height, texels of the layer.
+    pub viewport: UVec4,
+    /// Array layer of the map.
+    pub layer: u32,
+    /// What may throw a shadow into this view.
+    pub cull: CullVolume,
+    /// Size of its texels.
+    pub texel: TexelSize,
+    /// κ·λ of the warp that was applied; 0 is uniform (MATH.md section 0).
+    pub warp_strength: f32,
+    /// Eye depths of the receivers it serves, world units: nearest, farthest.
+    pub domain: [f32; 2],
+}
+
+/// Size of a view's texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexelSize {
+    /// Smallest and largest side of a texel across the light, world units.
+    pub world: [f32; 2],
+    /// Smallest and largest extent of a texel in the picture, pixels.
+    pub pixels: Footprint,
+}
+
+/// Extent of a shadow-map texel in the picture, pixels per texel (Lloyd's m; 1 or less means no aliasing).
+///
+/// Kind of promise: exact at the vertices of the focus body for receivers perpendicular to the light and seen head-on
+/// (perspective aliasing); surfaces at a slant to the light (projection aliasing) can be larger by 1/cos.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Smallest, pixels.
+    pub min: f32,
+    /// Largest, pixels.
+    pub max: f32,
+}
+
+impl Footprint {
+    /// No texel at all.
+    pub const NONE: Self = Self { min: 0.0, max: 0.0 };
+}
+
+/// The casters of a view: a convex volume that is open towards the light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CullVolume {
+    /// World position of render space's origin.
+    pub(crate) origin: DVec3,
+    /// Half-spaces `dot(normal, x) + offset >= 0` in render space.
+    pub(crate) planes: ArrayVec<DVec4, MAX_CULL_PLANES>,
+}
+
+impl CullVolume {
+    /// False only if nothing within `bounds` (world space) can throw a shadow that the view shows.
+    ///
+    /// Conservative: exact for each plane of the volume alone. O(planes).
+    #[must_use]
+    pub fn may_cast(&self, bounds: &Aabb) -> bool {
+        if bounds.is_empty() {
+            return false;
+        }
+        let centre = bounds.centre() - self.origin;
+        let half = bounds.half_size();
+        self.planes.iter().all(|plane| {
+            let normal = plane.truncate();
+            // The farthest corner along the normal; a NaN (overflowing box) keeps the caster.
+            !(normal.dot(centre) + plane.w + normal.abs().dot(half) < 0.0)
+        })
+    }
+
+    /// The half-spaces in render space: `dot(plane, (x, y, z, 1)) >= 0` inside.
+    #[must_use]
+    pub fn planes(&self) -> &[DVec4] {
+        &self.planes
+    }
+}
+
+/// The receiver shader's uniform block. A key for one view reads only its first element (128 bytes).
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ShadowUniforms {
+    /// One block per view; views that are not in use read lit.
+    pub views: [ViewUniforms; MAX_VIEWS],
+    /// Number of views in use; the rest is padding.
+    pub counts: [u32; 4],
+}
+
+/// What the receiver shader knows of one view. The layout equals `AntumbraView` in the shader, member by member.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ViewUniforms {
+    /// Texture coordinate u (times w) of a render-space position: a row.
+    pub u_from_render: [f32; 4],
+    /// Texture coordinate v (times w): a row.
+    pub v_from_render: [f32; 4],
+    /// The divisor w: a row; (0, 0, 0, 1) when the map is affine.
+    pub w_from_render: [f32; 4],
+    /// Linear light depth in [0, 1]: a row.
+    pub depth_from_render: [f32; 4],
+    /// xyz: one texel step in u across the light, world units. w: depth per world unit along the light.
+    pub texel_u: [f32; 4],
+    /// xyz: one texel step in v across the light, world units. w: world units per depth.
+    pub texel_v: [f32; 4],
+    /// x: constant bias, depth units. y: weight of the automatic slope bias (0 or 1). z: weight of the automatic normal
+    /// offset (0 or 1). w: manual normal offset, world units.
+    pub bias: [f32; 4],
+    /// The view's rectangle in texture coordinates: u min, v min, u max, v max. Outside is lit.
+    pub rect: [f32; 4],
+}
+
+impl ViewUniforms {
+    /// A view that reads lit everywhere: its rectangle is empty.
+    pub const LIT: Self = Self {
+        u_from_render: [0.0; 4],
+        v_from_render: [0.0; 4],
+        w_from_render: [0.0, 0.0, 0.0, 1.0],
+        depth_from_render: [0.0; 4],
+        texel_u: [0.0; 4],
+        texel_v: [0.0; 4],
+        bias: [0.0; 4],
+        rect: [2.0, 2.0, -1.0, -1.0],
+    };
+}

@@ -1,0 +1,5 @@
+//! Mathematics without an opinion about shadows: typed spaces, exact convex clipping, smallest rectangles.
+
+pub(crate) mod convex;
+pub(crate) mod rectangle;
+pub(crate) mod space;

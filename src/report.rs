@@ -1,0 +1,110 @@
+//! What a frame did without, and why. Nothing is dropped silently.
+
+use core::fmt;
+
+/// The part of the plan that was left out, clamped or replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Part {
+    /// All maps of this light.
+    Light,
+    /// One view, by its number in the technique's plan.
+    View(u8),
+    /// The objects list, as a source of tighter bounds.
+    Objects,
+    /// The part of the view frustum that lies outside `scene.visible_depth`.
+    Frustum,
+    /// Receivers of a view that need no texel.
+    Receivers(u8),
+    /// Stabilisation of a view.
+    Stabilise(u8),
+    /// The extent of a view across the light.
+    Window(u8),
+}
+
+/// Why it was left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Why {
+    /// The scene says that it holds no receivers.
+    NoReceivers,
+    /// The scene says that it holds no casters.
+    NoCasters,
+    /// No receiver lies in the view frustum between these eye depths (world units).
+    NoReceiversInView {
+        /// Nearest eye depth looked at.
+        near: f64,
+        /// Farthest eye depth looked at; may be infinite.
+        far: f64,
+    },
+    /// Nothing that casts stands between the light and the receivers in view.
+    NothingCastsHere,
+    /// The visible depth range holds no depth of the frustum.
+    OutsideVisibleDepth {
+        /// Nearest visible eye depth, world units.
+        near: f64,
+        /// Farthest visible eye depth, world units.
+        far: f64,
+    },
+    /// Everything beyond this eye depth was not asked for (`scene.visible_depth`).
+    BeyondVisibleDepth {
+        /// Farthest visible eye depth, world units.
+        far: f64,
+    },
+    /// The shadow of the casters' bounds covers only a part of the receivers in view; the rest is lit without a lookup.
+    LitWithoutLookup,
+    /// The body has no extent across the light (edge-on, or a point); it was widened to this many world units.
+    Degenerate {
+        /// The least extent that positions near the body can express, world units.
+        widened_to: f64,
+    },
+    /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
+    AlreadyStill,
+}
+
+/// One line of [`ShadowFrame::left_out`](crate::ShadowFrame::left_out). `Display` gives a sentence for an overlay or a log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOut {
+    /// What was left out.
+    pub part: Part,
+    /// Why.
+    pub why: Why,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Light => write!(f, "light"),
+            Self::View(index) => write!(f, "view {index}"),
+            Self::Objects => write!(f, "objects"),
+            Self::Frustum => write!(f, "frustum"),
+            Self::Receivers(index) => write!(f, "view {index}, receivers"),
+            Self::Stabilise(index) => write!(f, "view {index}, stabilisation"),
+            Self::Window(index) => write!(f, "view {index}, window"),
+        }
+    }
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoReceivers => write!(f, "the scene has no receivers"),
+            Self::NoCasters => write!(f, "the scene has no casters"),
+            Self::NoReceiversInView { near, far } => write!(f, "no receivers in view in [{near:.4}, {far:.4}]"),
+            Self::NothingCastsHere => write!(f, "nothing casts a shadow on the receivers in view"),
+            Self::OutsideVisibleDepth { near, far } => {
+                write!(f, "the visible depth [{near:.4}, {far:.4}] misses the frustum")
+            }
+            Self::BeyondVisibleDepth { far } => write!(f, "not needed beyond the visible depth {far:.4}"),
+            Self::LitWithoutLookup => write!(f, "outside the shadow of the casters' bounds: lit without a lookup"),
+            Self::Degenerate { widened_to } => write!(f, "no extent across the light: widened to {widened_to:.3e}"),
+            Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
+        }
+    }
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.part, self.why)
+    }
+}

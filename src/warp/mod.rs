@@ -1,0 +1,3 @@
+//! How ray coordinates are laid out on a map.
+
+pub(crate) mod uniform;

@@ -1,0 +1,93 @@
+//! From a key to shader text: the fragments it needs and no others.
+//!
+//! The fragments are plain WGSL without bindings, entry points, overrides or directives, and every item carries the prefix
+//! `antumbra_`, `Antumbra` or `ANTUMBRA_`. [`library`] is their concatenation order; [`module`] adds the bindings, with
+//! numbers chosen by the caller, and the function an engine calls:
+//!
+//! ```wgsl
+//! fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32
+//! ```
+//!
+//! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked at,
+//! `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
+
+use arrayvec::ArrayVec;
+
+use crate::frame::{Pcf, WgslKey};
+
+/// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bindings {
+    /// Bind group index.
+    pub group: u32,
+    /// First of [`BINDING_COUNT`] consecutive binding numbers.
+    pub first: u32,
+}
+
+/// Number of bindings: the uniforms, the map, the comparison sampler.
+pub const BINDING_COUNT: u32 = 3;
+
+/// Most fragments of a key.
+const MAX_FRAGMENTS: usize = 8;
+
+/// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
+///
+/// The texts live in the binary: no allocation.
+#[must_use]
+pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
+    let mut fragments = ArrayVec::new();
+    fragments.push(include_str!("../shaders/view.wgsl"));
+    fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
+    fragments.push(CASTER);
+    fragments.push(include_str!("../shaders/lookup.wgsl"));
+    match key.filter {
+        Pcf::Point => fragments.push(include_str!("../shaders/pcf_point.wgsl")),
+        Pcf::Hardware2x2 => fragments.push(include_str!("../shaders/pcf_hardware.wgsl")),
+        Pcf::Box3x3 => {
+            fragments.push(TAP);
+            fragments.push(include_str!("../shaders/pcf_box_three.wgsl"));
+        }
+        Pcf::Box5x5 => {
+            fragments.push(TAP);
+            fragments.push(include_str!("../shaders/pcf_box_five.wgsl"));
+        }
+    }
+    fragments.push(include_str!("../shaders/visibility_one.wgsl"));
+    fragments
+}
+
+/// The caster stage alone, for the vertex shader of a depth pass: `antumbra_caster(clip_from_render, position)`.
+pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
+
+const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
+
+/// The whole text for an engine's shader: library, bindings, and `antumbra_visibility`.
+///
+/// Cold path: call it when options change, not per frame.
+#[must_use]
+pub fn module(key: WgslKey, bindings: Bindings) -> String {
+    let Bindings { group, first } = bindings;
+    let (uniforms, map, compare) = (first, first + 1, first + 2);
+    let mut text = String::new();
+    for fragment in library(key) {
+        text.push_str(fragment);
+        text.push('\n');
+    }
+    text.push_str(&format!(
+        "@group({group}) @binding({uniforms}) var<uniform> antumbra_uniforms: AntumbraUniforms;\n\
+         @group({group}) @binding({map}) var antumbra_map: texture_depth_2d;\n\
+         @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n\
+         \n\
+         fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {{\n\
+         \x20   return antumbra_visible(antumbra_uniforms.view, antumbra_map, antumbra_compare, position, normal);\n\
+         }}\n"
+    ));
+    text
+}
+
+impl WgslKey {
+    /// Every key, for tests and for engines that build their pipelines up front.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Pcf::ALL.into_iter().map(|filter| Self { filter })
+    }
+}
