@@ -21,6 +21,7 @@ pub(crate) fn footprint(camera: &Camera, vertices: &[DVec3], origin: DVec3, texe
         farthest = farthest.max(depth);
     }
     let rows = f64::from(camera.viewport.y);
-    let pixels = |depth: f64| (texel * rows / camera.projection.height_at(depth)) as f32;
+    // A lens that sees nothing wide makes texels that fill any picture: the largest number stands for it.
+    let pixels = |depth: f64| (texel * rows / camera.projection.height_at(depth)).min(f64::from(f32::MAX)) as f32;
     (Footprint { min: pixels(farthest), max: pixels(nearest) }, [nearest as f32, farthest as f32])
 }

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, UVec2};
 
-use crate::error::{FitError, finite};
+use crate::error::{FitError, coordinate, finite};
 
 /// A camera. World and view space are right-handed; the view looks along −z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub enum Projection {
         up: f64,
         /// Nearest eye depth, greater than 0.
         near: f64,
-        /// Farthest eye depth, greater than `near`; `f64::INFINITY` is legal.
+        /// Farthest eye depth, greater than `near`: at most 1e15, or `f64::INFINITY`.
         far: f64,
     },
     /// A box. The four numbers are distances from the view axis, world units.
@@ -137,7 +137,7 @@ impl Camera {
     pub(crate) fn validate(&self) -> Result<(), FitError> {
         let entries = self.world_from_view.to_cols_array();
         for value in entries {
-            finite("camera.world_from_view", value)?;
+            coordinate("camera.world_from_view", value)?;
         }
         if self.world_from_view.row(3) != DVec4::W {
             return Err(FitError::NotRigid { field: "camera.world_from_view", deviation: f64::INFINITY });
@@ -211,11 +211,14 @@ impl Projection {
     fn validate(&self) -> Result<(), FitError> {
         let (left, right, down, up, perspective) = self.sides();
         let (near, far) = self.depth_range();
-        finite("camera.projection.left", left)?;
-        finite("camera.projection.right", right)?;
-        finite("camera.projection.down", down)?;
-        finite("camera.projection.up", up)?;
-        finite("camera.projection.near", near)?;
+        coordinate("camera.projection.left", left)?;
+        coordinate("camera.projection.right", right)?;
+        coordinate("camera.projection.down", down)?;
+        coordinate("camera.projection.up", up)?;
+        coordinate("camera.projection.near", near)?;
+        if !(perspective && far == f64::INFINITY) {
+            coordinate("camera.projection.far", far)?;
+        }
         ordered("camera.projection.left", left, "camera.projection.right", right, "left < right")?;
         ordered("camera.projection.down", down, "camera.projection.up", up, "down < up")?;
         if perspective {
@@ -223,11 +226,6 @@ impl Projection {
                 let field = "camera.projection.near";
                 return Err(FitError::OutOfRange { field, value: near, legal: "greater than 0 (perspective)" });
             }
-            if far.is_nan() {
-                return Err(FitError::NotFinite { field: "camera.projection.far", value: far });
-            }
-        } else {
-            finite("camera.projection.far", far)?;
         }
         ordered("camera.projection.near", near, "camera.projection.far", far, "near < far")
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{FitError, finite};
+use crate::error::{FitError, coordinate, finite};
 
 /// A light. Directions are unit vectors; lengths nearer than 0.001 to 1 are normalised, others are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,9 +70,9 @@ fn unit(travel: DVec3) -> Result<DVec3, FitError> {
 
 fn position_and_range(position: DVec3, range: f64) -> Result<(), FitError> {
     for component in position.to_array() {
-        finite("light.position", component)?;
+        coordinate("light.position", component)?;
     }
-    finite("light.range", range)?;
+    coordinate("light.range", range)?;
     if range > 0.0 {
         return Ok(());
     }

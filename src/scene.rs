@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{FitError, finite};
+use crate::error::{FitError, coordinate};
 
 /// An axis-aligned box, world space. A box may be flat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +60,8 @@ impl Aabb {
             return Ok(());
         }
         for (low, high) in self.min.to_array().into_iter().zip(self.max.to_array()) {
-            finite(min, low)?;
-            finite(max, high)?;
+            coordinate(min, low)?;
+            coordinate(max, high)?;
             if low > high {
                 let legal = "min <= max on every axis (or Aabb::EMPTY)";
                 return Err(FitError::NotOrdered {
@@ -122,7 +122,7 @@ impl Scene<'_> {
             object.bounds.validate("scene.objects.bounds.min", "scene.objects.bounds.max")?;
         }
         let Some(DepthRange { near, far }) = self.visible_depth else { return Ok(()) };
-        finite("scene.visible_depth.near", near)?;
+        coordinate("scene.visible_depth.near", near)?;
         if far.is_nan() {
             return Err(FitError::NotFinite { field: "scene.visible_depth.far", value: far });
         }

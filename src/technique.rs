@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::camera::Camera;
-use crate::error::{FitError, finite};
+use crate::error::{FitError, coordinate};
 use crate::frame::{ShadowFrame, WgslKey};
 use crate::light::Light;
 use crate::scene::{MapBudget, Scene};
@@ -34,7 +34,7 @@ impl FitInput<'_> {
         self.scene.validate()?;
         self.map.validate()?;
         for component in self.origin.to_array() {
-            finite("origin", component)?;
+            coordinate("origin", component)?;
         }
         Ok(self)
     }

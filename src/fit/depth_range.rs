@@ -1,6 +1,6 @@
 //! Depth along the light: from the first caster to the last receiver.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::frame::CullVolume;
 use crate::light_space::LightSpace;
@@ -38,17 +38,28 @@ impl DepthAlongLight {
         Self { near, far }
     }
 
-    /// Widened about its middle to at least `least`.
-    pub(crate) fn at_least(self, least: f64) -> Self {
-        let lack = (least - (self.far - self.near)).max(0.0) * 0.5;
-        Self { near: self.near - lack, far: self.far + lack }
+    /// Widened at both ends by what f32 loses of positions as far out as these depths and `margin`'s.
+    pub(crate) fn widened(self, margin: f64) -> Self {
+        let margin = margin.max(rounding(self.near.abs().max(self.far.abs())));
+        Self { near: self.near - margin, far: self.far + margin }
     }
 }
 
-/// The least extent, world units, that f32 positions as far out as `reach` can tell apart: 16 of their steps. Narrower
-/// maps would resolve rounding; wider ones would cost a small body texels.
-pub(crate) fn least_extent(vertices: &[DVec3], window_centre: DVec2) -> f64 {
-    let reach =
-        vertices.iter().fold(window_centre.abs().max_element(), |reach, vertex| reach.max(vertex.abs().max_element()));
-    (16.0 * f64::from(f32::EPSILON) * reach).max(f64::from(f32::MIN_POSITIVE).sqrt())
+/// Roundings of an f32 position on its way into a map: its own (½), the product with a matrix row (3 × ½), the matrix
+/// entries (½ each): 4 half steps, taken as whole ones. Fewer can push the outermost vertex out of the map; more costs
+/// texels only where positions are as coarse as texels.
+const POSITION_ROUNDINGS: f64 = 4.0;
+
+/// What f32 loses of coordinates as large as `reach`, world units. Never zero, so that nothing divides by zero.
+fn rounding(reach: f64) -> f64 {
+    (POSITION_ROUNDINGS * f64::from(f32::EPSILON) * reach).max(LEAST_MARGIN)
+}
+
+/// A body that is one point at the origin of render space still gets a map, of this size in world units: its texels'
+/// squares are far from f32's underflow.
+const LEAST_MARGIN: f64 = 1e-12;
+
+/// How far a map must reach beyond `vertices` so that f32 positions land inside it, world units.
+pub(crate) fn rounding_margin(vertices: &[DVec3]) -> f64 {
+    rounding(vertices.iter().fold(0.0, |reach: f64, vertex| reach.max(vertex.abs().max_element())))
 }

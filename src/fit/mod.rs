@@ -4,3 +4,4 @@ pub(crate) mod bias;
 pub(crate) mod cull;
 pub(crate) mod depth_range;
 pub(crate) mod snap;
+pub(crate) mod view;

@@ -6,7 +6,6 @@
 use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, Projection};
-use crate::light_space::LightSpace;
 use crate::warp::uniform::Window;
 
 /// Steps per doubling in which a snapped window may grow. More steps fit tighter but change the texel size, and so let
@@ -14,19 +13,27 @@ use crate::warp::uniform::Window;
 const STEPS_PER_OCTAVE: f64 = 16.0;
 
 /// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it stands or looks,
-/// placed on a world-fixed grid of texels. `texels` is the number of texels over its side, at least 2.
+/// placed on a world-fixed grid of texels. `texels` is the number of texels over its side, more than 1; `margin` is the
+/// rounding of positions (world units).
 ///
 /// `None` when the frustum has no finite sphere, or when the still window of the whole scene is no larger.
-pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, origin: DVec3) -> Option<Window> {
+pub(crate) fn snapped(
+    camera: &Camera,
+    far: f64,
+    margin: f64,
+    scene: &Window,
+    texels: f64,
+    origin: DVec3,
+) -> Option<Window> {
     let (centre_depth, radius) = bounding_sphere(&camera.projection, far);
     if !radius.is_finite() {
         return None;
     }
     // One texel more than the sphere, so that snapping cannot cut it.
-    let radius = quantised_up(radius);
+    let radius = quantised_up(radius + margin);
     let texel = 2.0 * radius / (texels - 1.0);
     let side = texel * texels;
-    if scene.size().max_element() <= side {
+    if !(texels > 1.0) || scene.size().max_element() <= side {
         return None;
     }
     // The lower corner, in ray coordinates of the world, on whole texels.
@@ -39,10 +46,13 @@ pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, or
 }
 
 /// Scene windows grow in steps too, so that a moving object at their border changes the texels seldom.
-pub(crate) fn still(window: &Window, texels: f64, light: &LightSpace, origin: DVec3) -> Window {
+pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
     let size = window.size();
-    let texel = DVec2::new(quantised_up(size.x), quantised_up(size.y)) / (texels - 1.0).max(1.0);
-    let grid = light.ray(origin).truncate();
+    if !(texels > 1.0) {
+        return *window;
+    }
+    let texel = DVec2::new(quantised_up(size.x), quantised_up(size.y)) / (texels - 1.0);
+    let grid = window.light.ray(origin).truncate();
     let low = ((window.low + grid) / texel).floor() * texel - grid;
     Window { light: window.light, low, high: low + texel * texels }
 }

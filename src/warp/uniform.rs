@@ -44,11 +44,8 @@ impl Window {
         self.high - self.low
     }
 
-    /// Grows it about its middle to at least `least` on each side; says whether it had to.
-    pub(crate) fn widen(&mut self, least: f64) -> bool {
-        let lack = (DVec2::splat(least) - self.size()).max(DVec2::ZERO) * 0.5;
-        self.low -= lack;
-        self.high += lack;
-        lack != DVec2::ZERO
+    /// Grown by `margin` on every side.
+    pub(crate) fn grown(self, margin: f64) -> Self {
+        Self { low: self.low - margin, high: self.high + margin, ..self }
     }
 }
