@@ -12,6 +12,13 @@
 //! `f32`; triangles are clipped in homogeneous coordinates; screen positions snap to 1/256 pixel; a pixel belongs to a
 //! triangle when its centre lies inside, or on a top or left edge; depth is linear on the screen. Both sides of a
 //! triangle are drawn. Equal inputs give equal bits whatever the number of threads.
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "pixel and triangle numbers stay below 2^32; narrowing to f32 is what GPUs do"
+)]
 
 mod resolve;
 mod setup;
@@ -244,3 +251,12 @@ fn bilinear_alpha(cutout: &Cutout, uv: [f64; 2]) -> f32 {
     let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
     mix(mix(texel(top, left), texel(top, right), x), mix(texel(bottom, left), texel(bottom, right), x), y)
 }
+
+#[cfg(test)]
+#[allow(
+    clippy::cast_lossless,
+    clippy::float_cmp,
+    clippy::many_single_char_names,
+    reason = "corners are a, b, c; cleared depths are exact"
+)]
+mod tests;

@@ -3,6 +3,12 @@
 //! and the planes 1 and 50; the geometry is this project's own).
 //!
 //! 1 unit = 1 m. The trees stand on the x axis; a rail fence runs behind them, stones, mushrooms and grass around them.
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "counts of a built-in scene stay far below 2^32"
+)]
 
 use std::f64::consts::{PI, TAU};
 
@@ -126,7 +132,7 @@ pub fn treeline() -> SceneModel {
     add_grass(&mut mesh);
 
     // Grow the wood, then share what is left of the triangles (two a leaf) between the twigs
-    let trees = SPECIES.each_ref().map(|species| grow(species));
+    let trees = SPECIES.each_ref().map(grow);
     let wood: usize = trees.iter().flatten().map(Branch::triangles).sum();
     let leaves = (TRIANGLES - mesh.triangle_count() - wood) / 2;
     let twigs = trees.iter().flatten().filter(|branch| branch.bears_leaves()).count();
@@ -282,12 +288,12 @@ fn add_leaves(mesh: &mut MeshBuilder, twig: &Branch, count: usize, length: f64, 
         let up = across.cross(rib);
 
         // Spread the blade: stalk, right, tip, left
-        let size = length * random.range(0.7, 1.2);
-        let middle = start + rib * (size * 0.45) + up * (size * 0.08);
-        let right = mesh.vertex(middle + across * (size * 0.3));
-        let left = mesh.vertex(middle - across * (size * 0.3));
+        let long = length * random.range(0.7, 1.2);
+        let middle = start + rib * (long * 0.45) + up * (long * 0.08);
+        let right = mesh.vertex(middle + across * (long * 0.3));
+        let left = mesh.vertex(middle - across * (long * 0.3));
         let stalk = mesh.vertex(start);
-        let tip = mesh.vertex(start + rib * size - up * (size * 0.05));
+        let tip = mesh.vertex(start + rib * long - up * (long * 0.05));
         mesh.triangle([stalk, right, tip]);
         mesh.triangle([stalk, tip, left]);
     }
@@ -359,12 +365,12 @@ fn add_grass(mesh: &mut MeshBuilder) {
             let (out, across) = (DVec3::new(cos, 0.0, sin), DVec3::new(-sin, 0.0, cos) * random.range(0.01, 0.02));
             let height = random.range(0.15, 0.5);
             let knee = foot + DVec3::Y * (height * 0.65) + out * (height * 0.15);
-            let [a, b] = [foot - across, foot + across].map(|p| mesh.vertex(p - DVec3::Y * 0.02));
-            let [c, d] = [knee - across * 0.7, knee + across * 0.7].map(|p| mesh.vertex(p));
+            let feet = [foot - across, foot + across].map(|corner| mesh.vertex(corner - DVec3::Y * 0.02));
+            let knees = [knee - across * 0.7, knee + across * 0.7].map(|corner| mesh.vertex(corner));
             let tip = mesh.vertex(foot + DVec3::Y * height + out * (height * 0.5));
-            mesh.triangle([a, b, d]);
-            mesh.triangle([a, d, c]);
-            mesh.triangle([c, d, tip]);
+            mesh.triangle([feet[0], feet[1], knees[1]]);
+            mesh.triangle([feet[0], knees[1], knees[0]]);
+            mesh.triangle([knees[0], knees[1], tip]);
         }
         mesh.end_object();
     }

@@ -1,6 +1,6 @@
 //! From a pixel back to the surface point it shows.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{DepthMode, DepthTarget, NONE};
@@ -42,7 +42,7 @@ pub fn resolve(target: &DepthTarget, model: &SceneModel, render_from_clip: &DMat
             let y = 1.0 - (row + 0.5) / size[1] * 2.0;
             let corners = model.triangles[triangle as usize]
                 .map(|vertex| (model.positions[vertex as usize] - origin).as_vec3().as_dvec3());
-            let (position, normal) = viewer.meet(x, y, &corners)?;
+            let (position, normal) = viewer.meet(DVec2::new(x, y), &corners)?;
             Some(Hit { position, normal, triangle })
         })
         .collect()
@@ -66,14 +66,14 @@ impl<'a> Viewer<'a> {
         Self { render_from_clip, centre: render_from_clip.z_axis, towards }
     }
 
-    /// Position and facing normal where the ray through clip (x, y) meets a triangle; `None` for one without area.
-    fn meet(&self, x: f64, y: f64, corners: &[DVec3; 3]) -> Option<(DVec3, DVec3)> {
+    /// Position and facing normal where the ray through clip `at` meets a triangle; `None` for one without area.
+    fn meet(&self, at: DVec2, corners: &[DVec3; 3]) -> Option<(DVec3, DVec3)> {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
         let plane = normal.extend(-normal.dot(a));
 
         // Any second point of the ray does; the middle of the depth range is finite for infinite far planes too
-        let through = *self.render_from_clip * DVec4::new(x, y, 0.5, 1.0);
+        let through = *self.render_from_clip * at.extend(0.5).extend(1.0);
         let met = self.centre * plane.dot(through) - through * plane.dot(self.centre);
         let inside = clamp_to_triangle(met.truncate() / met.w, corners)?;
 
