@@ -405,6 +405,21 @@ mod tests {
     }
 
     #[test]
+    fn solids_face_outwards() {
+        // Seen from its own first corner, a closed object that faces outwards has a positive volume
+        let model = sparse_city();
+        for object in model.objects.iter().skip(1) {
+            let from = model.positions[model.triangles[object.start][0] as usize];
+            let volume: f64 = model.triangles[object.clone()]
+                .iter()
+                .map(|corners| corners.map(|vertex| model.positions[vertex as usize] - from))
+                .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
+                .sum();
+            assert!(volume > 0.3, "object {object:?}: {volume} m^3");
+        }
+    }
+
+    #[test]
     fn covers_eight_square_kilometres() {
         let model = sparse_city();
         let low = model.positions.iter().copied().reduce(DVec3::min).unwrap();

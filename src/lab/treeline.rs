@@ -20,10 +20,10 @@ use super::shapes::{MeshBuilder, Random, Ring, perpendicular};
 /// Triangles of the scene: the thesis' number. What wood, floor and props leave goes into leaves.
 const TRIANGLES: usize = 111_000;
 
-/// Half the side of the square floor, m: the shadows of an 8.5 m tree stay on it down to a sun 28 degrees high.
+/// Half the side of the square floor, m: the shadow of the tallest tree (8.7 m) stays on it down to a sun 24 degrees high.
 const FLOOR_HALF: f64 = 20.0;
 
-/// Cells of the floor per side: enough for its bumps (wavelength 6 m) to look round.
+/// Cells of the floor per side: six to a wave of the bumps, which therefore look round.
 const FLOOR_CELLS: u32 = 40;
 
 /// The angle between neighbouring branches around their parent, radians: the golden angle, as in most trees.
@@ -158,7 +158,7 @@ pub fn treeline() -> SceneModel {
     mesh.finish()
 }
 
-/// Height of the floor, m: two shallow waves of 5 cm each, level to 5 mm where the middle tree stands.
+/// Height of the floor, m: two shallow waves of 5 cm each, 6.5 m and 7.4 m long.
 fn floor_height(x: f64, z: f64) -> f64 {
     0.05 * ((x * 0.9 + z * 0.35).sin() + (z * 0.8 - x * 0.3 + 1.0).sin())
 }
@@ -400,6 +400,7 @@ mod tests {
         // From the viewpoints 21 m away the far plane at 50 m must hold floor and crowns
         let model = treeline();
         let highest = model.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+
         assert!((7.0..10.5).contains(&highest), "highest leaf at {highest} m");
         assert!(model.positions.iter().all(|p| p.x.abs() <= FLOOR_HALF && p.z.abs() <= FLOOR_HALF));
     }

@@ -73,7 +73,7 @@ pub fn treeline_viewpoints() -> Vec<Viewpoint> {
     vec![
         view("across", [-16.5, 1.8, 5.2], [-2.0, 2.3, 0.3], [-161.0, 47.0]),
         view("ahead", [-2.4, 1.8, 17.5], [0.3, 2.6, 0.0], [172.0, 30.0]),
-        view("close", [-2.0, 1.7, 3.6], [0.5, 0.8, -0.6], [-58.0, 52.0]),
+        view("close", [2.3, 1.7, 3.9], [0.3, 0.75, -0.6], [-118.0, 50.0]),
         view("overview", [-13.0, 9.5, 18.0], [0.4, 1.6, 0.0], [-22.0, 42.0]),
         view("facade", [0.5, 1.9, 19.6], [0.0, 3.2, 0.0], [100.0, 40.0]),
     ]
@@ -137,7 +137,11 @@ fn moved(kind: PathKind, start: &Viewpoint, frame: usize) -> Viewpoint {
 
 #[cfg(test)]
 mod tests {
+    use glam::dcamera::rh::{proj::directx::perspective, view::look_to_mat4};
+
     use super::*;
+    use crate::lab::raster::{DepthMode, DepthTarget, NONE, RasterPass, rasterise};
+    use crate::lab::{sparse_city::sparse_city, treeline::treeline};
 
     fn all() -> Vec<Viewpoint> {
         [treeline_viewpoints(), sparse_city_viewpoints()].concat()
@@ -159,6 +163,35 @@ mod tests {
             assert!(view.travel.is_normalized() && view.travel.y < 0.0, "{}: {}", view.name, view.travel);
             assert!(0.0 < view.near && view.near < view.shadow_distance && view.shadow_distance <= view.far);
             assert!((view.target - view.eye).normalize().cross(view.up).length() > 0.1, "{}", view.name);
+        }
+    }
+
+    #[test]
+    fn viewpoints_stand_in_the_open_and_see_much() {
+        const SIZE: [u32; 2] = [160, 120];
+        let scenes = [(treeline(), treeline_viewpoints()), (sparse_city(), sparse_city_viewpoints())];
+        for (scene, view) in scenes.iter().flat_map(|(scene, views)| views.iter().map(move |view| (scene, view))) {
+            let projection = perspective(view.fov_y, 4.0 / 3.0, view.near, view.far);
+            let clip = projection * look_to_mat4(DVec3::ZERO, (view.target - view.eye).normalize(), view.up);
+            let pass = RasterPass { clip_from_render: clip.as_mat4(), depth_from_render: None, origin: view.eye };
+            let mut target = DepthTarget::new(SIZE[0], SIZE[1], DepthMode::LessEqual);
+            rasterise(&mut target, scene, &scene.objects, &pass);
+
+            let mut objects: Vec<usize> = target
+                .triangle
+                .iter()
+                .filter(|&&triangle| triangle != NONE)
+                .map(|&triangle| scene.objects.partition_point(|object| object.end <= triangle as usize))
+                .collect();
+            let share = objects.len() as f64 / target.triangle.len() as f64;
+            objects.sort_unstable();
+            objects.dedup();
+            assert!((0.4..0.95).contains(&share), "{}: {share} of the picture shows the scene", view.name);
+            assert!(objects.len() >= 12, "{}: {} objects in sight", view.name, objects.len());
+
+            // The lowest row shows ground: the near plane must not cut it off
+            let lowest = target.triangle.iter().rev().take(SIZE[0] as usize);
+            assert!(lowest.clone().all(|&triangle| triangle != NONE), "{}: the near plane shows", view.name);
         }
     }
 
