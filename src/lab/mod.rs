@@ -1,2 +1,7 @@
 //! The laboratory: scenes, ray-traced truth, metrics, renderers and reports (feature `lab`).
+pub mod raster;
 pub mod scene;
+pub mod shapes;
+pub mod sparse_city;
+pub mod treeline;
+pub mod viewpoints;
