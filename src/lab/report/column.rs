@@ -187,7 +187,7 @@ pub const COLUMNS: [Column; 30] = [
         "floor_mae",
         "floor",
         "",
-        "The mae of a perfect lookup with one sample per pixel: unfiltered techniques cannot pass it.",
+        "The mae of a perfect lookup with one sample per pixel: unfiltered techniques can hardly pass it.",
         |r| Cell::Difference(r.floor_mae),
     ),
     column("wrong", "wrong", "%", "Pixels more than one half away from the area truth.", |r| Cell::Share(r.wrong)),

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::column::{self, KIB};
+use super::column::{self, Cell, KIB};
 use super::plot::{Axes, Axis, Floor, PlotPoint, Series, error_time_svg};
 use super::{Report, Row, SceneSection};
 
@@ -29,7 +29,7 @@ const PLOTS: [Plot; 4] = [
     Plot {
         title: "Wrong pixels and time",
         x: "wrong_center",
-        x_name: "share of pixels wrong against the centre truth",
+        x_name: "pixels wrong against the centre truth, %",
         y: "total_ms",
         y_name: "time of a frame, ms",
         has_floor: false,
@@ -44,10 +44,10 @@ const PLOTS: [Plot; 4] = [
     },
     Plot {
         title: "Prediction and outcome",
-        x: "edge_center_px",
-        x_name: "measured shift of shadow edges, px",
-        y: "predicted_px",
-        y_name: "predicted footprint, px per texel",
+        x: "predicted_px",
+        x_name: "predicted footprint, px per texel",
+        y: "edge_center_px",
+        y_name: "measured shift of shadow edges, px",
         has_floor: false,
     },
 ];
@@ -82,16 +82,18 @@ pub(super) fn write(sink: &mut impl Write, section: &SceneSection, styles: &[&st
     writeln!(sink, "</div>")
 }
 
+/// A row's value in the unit of the axis; NaN when the column holds none.
+fn value(name: &str, row: &Row) -> f64 {
+    match column::find(name).map(|column| (column.cell)(row)) {
+        Some(cell @ Cell::Bytes(_)) => cell.number().map(|bytes| bytes / (KIB * KIB)),
+        Some(Cell::Share(share)) => Some(100.0 * share),
+        other => other.and_then(|cell| cell.number()),
+    }
+    .unwrap_or(f64::NAN)
+}
+
 /// Draws one plot.
 fn svg(plot: &Plot, rows: &[Row], styles: &[&str]) -> String {
-    let value = |name: &str, row: &Row| {
-        let cell = column::find(name).map(|column| (column.cell)(row));
-        match cell {
-            Some(cell @ column::Cell::Bytes(_)) => cell.number().map(|bytes| bytes / (KIB * KIB)),
-            other => other.and_then(|cell| cell.number()),
-        }
-        .unwrap_or(f64::NAN)
-    };
     let point = |row: &Row| {
         let missing = row.failed();
         let at = |name| if missing { f64::NAN } else { value(name, row) };

@@ -1,6 +1,5 @@
 //! Pictures of one scene: the truth and every run side by side, each also as a picture of its error.
 
-use std::fmt::Write as _;
 use std::io::{self, Cursor, Write};
 
 use base64::display::Base64Display;
@@ -77,7 +76,7 @@ fn write_truth(sink: &mut impl Write, section: &SceneSection) -> io::Result<()> 
         sink,
         "<figure class=\"card truth\" data-name=\"Truth\" data-size=\"\">\n\
          <button type=\"button\" class=\"open\" aria-label=\"Truth at full size\">{}</button>\n\
-         <figcaption><b>Truth</b> <span class=\"size\">ray traced</span><span class=\"figures\">{floor}</span></figcaption></figure>",
+         <figcaption><span class=\"head\"><b>Truth</b> <span class=\"size\">ray traced</span></span><span class=\"figures\">{floor}</span></figcaption></figure>",
         image(&section.truth_png, "truth", &alt)
     )
 }
@@ -93,20 +92,24 @@ fn write_card(sink: &mut impl Write, section: &SceneSection, picture: &Picture) 
         sink,
         "<figure class=\"card\" data-name=\"{name}\" data-size=\"{size}\">\n\
          <button type=\"button\" class=\"open\" aria-label=\"{name} {size} at full size\">{images}</button>\n\
-         <figcaption><b>{name}</b> <span class=\"size\">{size}</span>\
-         <span class=\"figures\">{}</span><span class=\"caption\">{}</span></figcaption></figure>",
+         <figcaption><span class=\"head\"><b>{name}</b> <span class=\"size\">{size}</span>\
+         <span class=\"time\">{}</span></span><span class=\"figures\">{}</span><span class=\"caption\">{}</span></figcaption></figure>",
+        row.map(time).unwrap_or_default(),
         row.map(figures).unwrap_or_default(),
         Escaped(caption),
         name = Escaped(technique),
     )
 }
 
-/// The figures that stand under a picture.
+/// How long a run took, beside its name.
+fn time(row: &Row) -> String {
+    format!("{} ms", Cell::Milliseconds(row.total_ms).text())
+}
+
+/// The errors that stand under a picture.
 fn figures(row: &Row) -> String {
-    let mut text = format!("mae {}", Cell::Difference(row.mae).text());
-    let _ = write!(text, " · wrong {} %", Cell::Share(row.wrong_center).text());
-    let _ = write!(text, " · {} ms", Cell::Milliseconds(row.total_ms).text());
-    text
+    let (mae, wrong) = (Cell::Difference(row.mae).text(), Cell::Share(row.wrong_center).text());
+    format!("mae\u{a0}{mae} · wrong\u{a0}{wrong}\u{a0}%")
 }
 
 /// A picture inside the page, decoded when it comes into view; an empty one is said to be missing.

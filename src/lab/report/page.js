@@ -42,6 +42,9 @@ for (const gallery of document.querySelectorAll("[data-gallery]")) {
   if (middle) { middle.checked = true; show(middle.value); }
 }
 
+// Paper cannot scroll: pictures that were not looked at yet must be there.
+window.addEventListener("beforeprint", () => document.querySelectorAll("img[loading]").forEach((image) => { image.loading = "eager"; }));
+
 // Full size: one picture at a time; flipping between shadows, truth and error keeps place and zoom.
 const box = document.getElementById("lightbox");
 const stage = box.querySelector(".lb-stage");
@@ -62,7 +65,7 @@ function render() {
   picture.hidden = !shown;
   if (shown) { picture.src = shown.src; picture.alt = shown.alt; }
   box.querySelector(".lb-name b").textContent = card.dataset.name;
-  box.querySelector(".lb-name span").textContent = [card.dataset.size, card.querySelector(".figures").textContent].filter(Boolean).join(" · ");
+  box.querySelector(".lb-name span").textContent = [card.dataset.size, card.querySelector(".time")?.textContent, card.querySelector(".figures").textContent].filter(Boolean).join(" · ");
   box.querySelector(".lb-count").textContent = `${state.at + 1} / ${state.cards.length}`;
   for (const button of box.querySelectorAll("[data-layer]")) {
     button.disabled = !present.includes(button.dataset.layer);

@@ -119,8 +119,8 @@ pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
     if empty {
         plot_marks::no_data(&mut body, &frame);
     }
-    plot_marks::floors(&mut body, &marks, axes);
-    let bottom = plot_marks::curves(&mut body, series, &marks, &frame, f64::from(AXES_HEIGHT));
+    let taken = plot_marks::floors(&mut body, &marks, axes, &frame);
+    let bottom = plot_marks::curves(&mut body, series, &marks, &frame, taken, f64::from(AXES_HEIGHT));
     let height = plot_marks::notes(&mut body, series, f64::from(WIDTH), bottom);
     document(title, &body, height)
 }
@@ -209,4 +209,85 @@ fn document(title: &str, body: &str, height: f64) -> String {
          width=\"{WIDTH}\" height=\"{height:.0}\" role=\"img\" aria-label=\"{}\">\n<style>\n{style}</style>\n{body}</svg>\n",
         Escaped(title),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(name: &str, points: &[(f64, f64)]) -> Series {
+        let point = |(i, &(x, y)): (usize, &(f64, f64))| PlotPoint { x, y, label: (512 << i).to_string() };
+        Series { name: name.into(), style: 0, points: points.iter().enumerate().map(point).collect() }
+    }
+
+    fn axes(floor: f64) -> Axes {
+        let axis =
+            |name: &str, value| Axis { name: name.into(), floor: Some(Floor { value, label: "<floor>".into() }) };
+        Axes { x: axis("error & more", floor), y: axis("time, ms", floor) }
+    }
+
+    /// Draws, reads the result as XML, and returns how many markers have a place on the axes.
+    fn markers(series: &[Series], floor: f64) -> (usize, String) {
+        let svg = error_time_svg("a <title>", series, &axes(floor));
+        let document = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}\n{svg}"));
+        assert!(!svg.contains("NaN,") && !svg.contains("inf") && !svg.contains("-2147483648"), "{svg}");
+        assert!(!svg.contains(INK_TEXT), "the stand-in colour shows");
+        let told =
+            |node: &roxmltree::Node| node.has_tag_name("path") && node.children().any(|c| c.has_tag_name("title"));
+        (document.descendants().filter(told).count(), svg)
+    }
+
+    #[test]
+    fn every_point_has_a_marker_and_every_series_a_name() {
+        let (count, svg) = markers(&[series("ssm", &[(0.1, 3.0), (0.05, 5.0)]), series("a<b>", &[(0.02, 9.0)])], 0.01);
+        assert_eq!(count, 3);
+        assert!(svg.contains(">ssm</text>") && svg.contains(">a&lt;b&gt;</text>") && svg.contains(">1024</text>"));
+        assert_eq!(svg.matches("class=\"floor\"").count(), 2);
+        assert!(!svg.contains("no data") && !svg.contains("Not drawn"));
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_said() {
+        let points = [(f64::NAN, 1.0), (0.1, f64::INFINITY), (0.0, 2.0), (0.1, 2.0)];
+        let (count, svg) = markers(&[series("psm", &points)], f64::NAN);
+        assert_eq!(count, 2);
+        assert!(svg.contains("Not drawn, no figure (NaN): psm 512, psm 1024"));
+        assert!(svg.contains("At zero, drawn hollow on the edge: psm 2048") && svg.contains("m edge"));
+        assert_eq!(svg.matches("class=\"floor\"").count(), 0);
+    }
+
+    #[test]
+    fn nothing_to_show_is_said() {
+        for nothing in [vec![], vec![series("ssm", &[])], vec![series("ssm", &[(f64::NAN, f64::NAN)])]] {
+            let (count, svg) = markers(&nothing, f64::NAN);
+            assert_eq!(count, 0);
+            assert!(svg.contains("no data"), "{svg}");
+        }
+    }
+
+    #[test]
+    fn extremes_stay_on_the_picture() {
+        let cases = [(0.0, 0.0), (-1.0, 5.0), (f64::MIN_POSITIVE, f64::MAX), (1e300, 1e-300), (7.0, 7.0)];
+        for single in cases {
+            assert_eq!(markers(&[series("one", &[single])], 0.5).0, 1, "{single:?}");
+        }
+        let (count, svg) = markers(&[series("all", &cases)], 1e-9);
+        assert_eq!(count, cases.len());
+        // Every marker lies within the picture.
+        for path in svg.split("class=\"m").skip(1).filter_map(|text| text.split_once("d=\"M")) {
+            let mut numbers =
+                path.1.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')).map(str::parse::<f64>);
+            let (x, y) = (numbers.next().unwrap().unwrap(), numbers.next().unwrap().unwrap());
+            assert!((0.0..f64::from(WIDTH)).contains(&x) && (0.0..600.0).contains(&y), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn many_curves_grow_the_legend_not_the_axes() {
+        let many: Vec<_> = (0..60).map(|i| series(&format!("a technique named {i}"), &[(0.1, 1.0)])).collect();
+        let (count, svg) = markers(&many, 0.05);
+        assert_eq!(count, 60);
+        let height = svg.split_once("height=\"").and_then(|(_, rest)| rest.split('"').next()).unwrap();
+        assert!(height.parse::<f64>().unwrap() > f64::from(AXES_HEIGHT) + 200.0);
+    }
 }

@@ -13,6 +13,8 @@ const MARKER: f64 = 4.0;
 const LABEL_LETTER: f64 = 5.8;
 /// Height of a point label, CSS pixels.
 const LABEL_HEIGHT: f64 = 9.0;
+/// Gap between a floor's line and its name, CSS pixels.
+const FLOOR_GAP: f64 = 6.0;
 /// Width of a letter of the legend, CSS pixels, with the same caution.
 const LEGEND_LETTER: f64 = 7.0;
 /// Width of the sample line in the legend with its gaps, CSS pixels.
@@ -51,7 +53,7 @@ impl Mark {
 }
 
 /// A rectangle that a label must not cover: left, top, right, bottom.
-type Taken = [f64; 4];
+pub(super) type Taken = [f64; 4];
 
 /// Says in the frame that there is nothing to show.
 pub(super) fn no_data(body: &mut String, frame: &Frame) {
@@ -67,36 +69,49 @@ pub(super) fn apology(error: &dyn Display) -> String {
     format!("<text x=\"2\" y=\"40\">This plot could not be drawn: {}</text>\n", Escaped(&error.to_string()))
 }
 
-/// Draws the floors as dashed lines across the frame.
-pub(super) fn floors(body: &mut String, marks: &Marks, axes: &Axes) {
-    let mut line = |ends: [(i32, i32); 2], at: (i32, i32), anchor: &str, label: &str| {
-        let [(x1, y1), (x2, y2)] = ends;
+/// Draws the floors as dashed lines across the frame, each with its name on the roomier side; returns the names' places.
+pub(super) fn floors(body: &mut String, marks: &Marks, axes: &Axes, frame: &Frame) -> Vec<Taken> {
+    let (left, right) = (f64::from(frame.x.start), f64::from(frame.x.end));
+    let mut taken = Vec::new();
+    let mut draw = |[(x1, y1), (x2, y2)]: [(i32, i32); 2], x: f64, y: f64, label: &str| {
+        // Let the name run towards the side that has more room.
+        let width = LABEL_LETTER * count(label.chars().count());
+        let (anchor, start) = if x < f64::midpoint(left, right) { ("start", x) } else { ("end", x - width) };
+        taken.push([start, y - LABEL_HEIGHT, start + width, y]);
         let _ = writeln!(
             body,
             "<g class=\"floor\"><line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"/>\
-             <text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text></g>",
-            at.0,
-            at.1,
+             <text x=\"{x:.0}\" y=\"{y:.0}\" text-anchor=\"{anchor}\">{}</text></g>",
             Escaped(label)
         );
     };
-    if let (Some(ends), Some(floor)) = (marks.x_floor, &axes.x.floor) {
-        line(ends, (ends[1].0, ends[1].1.min(ends[0].1) - 5), "middle", &floor.label);
+    if let (Some(line), Some(floor)) = (marks.x_floor, &axes.x.floor) {
+        let x = f64::from(line[0].0);
+        let gap = if x < f64::midpoint(left, right) { FLOOR_GAP } else { -FLOOR_GAP };
+        draw(line, x + gap, f64::from(frame.y.end) - FLOOR_GAP, &floor.label);
     }
-    if let (Some(ends), Some(floor)) = (marks.y_floor, &axes.y.floor) {
-        line(ends, (ends[1].0 - 4, ends[1].1 - 4), "end", &floor.label);
+    if let (Some(line), Some(floor)) = (marks.y_floor, &axes.y.floor) {
+        draw(line, right - FLOOR_GAP, f64::from(line[0].1) - FLOOR_GAP, &floor.label);
     }
+    taken
 }
 
 /// Draws every curve with its labels and its line of the legend; returns where the legend ends.
-pub(super) fn curves(body: &mut String, series: &[Series], marks: &Marks, frame: &Frame, top: f64) -> f64 {
+pub(super) fn curves(
+    body: &mut String,
+    series: &[Series],
+    marks: &Marks,
+    frame: &Frame,
+    mut taken: Vec<Taken>,
+    top: f64,
+) -> f64 {
     // Lay the legend out in as many columns as the longest name allows.
     let longest = series.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
     let width = f64::from(frame.x.end);
     let column_width = LEGEND_SAMPLE + LEGEND_LETTER * count(longest);
-    let columns = ((width / column_width) as usize).max(1);
+    let columns = fitting(width, column_width);
     // Keep labels off all markers, then off each other.
-    let mut taken: Vec<Taken> = marks.series.iter().flatten().map(marker_box).collect();
+    taken.extend(marks.series.iter().flatten().map(marker_box));
     for (i, (series, marks)) in series.iter().zip(&marks.series).enumerate() {
         let place = (2.0 + count(i % columns) * column_width, top + 8.0 + count(i / columns) * LEGEND_LINE);
         let _ = writeln!(body, "<g class=\"s c{}\"><title>{}</title>", series.style % COLOURS, Escaped(&series.name));
@@ -200,7 +215,7 @@ pub(super) fn notes(body: &mut String, series: &[Series], width: f64, top: f64) 
         if names.is_empty() {
             continue;
         }
-        for line in wrap(&format!("{what}{}", names.join(", ")), (width / NOTE_LETTER) as usize) {
+        for line in wrap(&format!("{what}{}", names.join(", ")), fitting(width, NOTE_LETTER)) {
             y += NOTE_LINE;
             let _ = writeln!(body, "<text class=\"note\" x=\"2\" y=\"{y:.0}\">{}</text>", Escaped(&line));
         }
@@ -248,4 +263,10 @@ fn dash(style: usize) -> &'static str {
 #[expect(clippy::cast_precision_loss, reason = "counts of letters and curves")]
 fn count(n: usize) -> f64 {
     n as f64
+}
+
+/// How many things of one width fit side by side, at least one.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates; widths are positive")]
+fn fitting(width: f64, each: f64) -> usize {
+    ((width / each) as usize).max(1)
 }

@@ -8,8 +8,11 @@ const MARGIN: f64 = 1.25;
 const LEAST_SPAN: f64 = 5.0;
 /// Axis of data without one positive value: any range would do.
 const NO_DATA: Range<f64> = 0.1..1.0;
-/// Up to so many decades, ticks stand at 2 and 5 as well; with more their labels would touch.
-const DECADES_WITH_STEPS: usize = 2;
+/// Which multiples of each power of ten carry a label, from coarse to fine.
+const LABELLED: [&[u8]; 2] = [&[1], &[1, 2, 5]];
+/// Up to so many labels are too few to read a value off a logarithmic axis; the finer choice is taken, and its labels do
+/// not touch as long as this stays below 4.
+const ENOUGH_LABELS: usize = 3;
 /// Powers of ten within are written out (0.001, 10000); beyond, as 10⁻⁴.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
 /// The powers of ten that a figure of this crate can reach; anything beyond is a mistake upstream and sits at the edge.
@@ -38,7 +41,7 @@ pub(super) struct Ticks {
     pub(super) faint: Vec<f64>,
 }
 
-/// Chooses ticks: powers of ten, and 2 and 5 times them when there are few.
+/// Chooses ticks: powers of ten, and multiples of them when there are few.
 pub(super) fn ticks(range: &Range<f64>) -> Ticks {
     #[expect(clippy::cast_possible_truncation, reason = "the range lies within 1e-16..1e16")]
     let exponents = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
@@ -47,8 +50,9 @@ pub(super) fn ticks(range: &Range<f64>) -> Ticks {
         let at = |e: i32| factors.iter().map(move |&f| tick(f, e));
         exponents.clone().flat_map(at).filter(inside).collect::<Vec<_>>()
     };
-    let powers = multiples(&[1]);
-    let labelled = if powers.len() <= DECADES_WITH_STEPS { multiples(&[1, 2, 5]) } else { powers };
+    // Take the first choice that leaves the reader enough to go by.
+    let labelled = LABELLED.into_iter().map(multiples).find(|t| t.len() > ENOUGH_LABELS);
+    let labelled = labelled.unwrap_or_else(|| multiples(&[1, 2, 3, 5, 7]));
     Ticks { labelled, faint: multiples(&[2, 3, 4, 5, 6, 7, 8, 9]) }
 }
 
@@ -90,15 +94,15 @@ mod tests {
     }
 
     #[test]
-    fn every_axis_has_at_least_two_labelled_ticks() {
+    fn every_axis_has_at_least_three_labelled_ticks() {
         // 1..10 in steps of 2 %: any axis of the least span is one of these, times a power of ten.
         let mut start = 1.0;
         while start < 10.0 {
             let t = ticks(&(start..start * LEAST_SPAN));
-            assert!(t.labelled.len() >= 2, "{start}: {:?}", t.labelled);
+            assert!(t.labelled.len() >= 3, "{start}: {:?}", t.labelled);
             start *= 1.02;
         }
-        assert_eq!(ticks(&(0.002..3.0)).labelled, [0.01, 0.1, 1.0]);
+        assert_eq!(ticks(&(0.0002..3.0)).labelled, [0.001, 0.01, 0.1, 1.0]);
         assert_eq!(ticks(&(0.008..0.3)).labelled, [0.01, 0.02, 0.05, 0.1, 0.2]);
     }
 

@@ -2,12 +2,41 @@
 
 use std::io::{self, Write};
 
-use super::column::{COLUMNS, Cell, Column};
+use super::column::{self, Cell, Column};
 use super::html::Escaped;
 use super::{Row, SceneSection};
 
-/// Columns that say the same in every row of a scene.
-const SAME_FOR_ALL: [&str; 2] = ["scene", "case"];
+/// The columns in the order of the page: what is asked for most stands first. Scene and case are in the section's heading.
+const SHOWN: [&str; 28] = [
+    "technique",
+    "size",
+    "total_ms",
+    "mae",
+    "floor_mae",
+    "excess",
+    "rmse",
+    "wrong_center",
+    "wrong",
+    "edge_center_px",
+    "leak_edge",
+    "leak_interior",
+    "false_edge",
+    "false_interior",
+    "predicted_px",
+    "fit_ns",
+    "casters_ms",
+    "filter_ms",
+    "receivers_ms",
+    "views",
+    "texels",
+    "bytes",
+    "split",
+    "warp",
+    "encoding",
+    "backend",
+    "adapter",
+    "left_out",
+];
 /// Columns with a bar behind their figures: the ones a reader scans first.
 const WITH_BAR: [&str; 4] = ["total_ms", "mae", "wrong_center", "bytes"];
 
@@ -25,8 +54,7 @@ pub(super) fn write(sink: &mut impl Write, section: &SceneSection) -> io::Result
         Escaped(&section.scene),
         Escaped(&section.case)
     )?;
-    // Put the derived excess beside the two figures it is made of.
-    let columns = shown_columns();
+    let columns: Vec<&Column> = SHOWN.iter().filter_map(|name| column::find(name)).collect();
     for column in &columns {
         write_heading(sink, column)?;
     }
@@ -40,15 +68,6 @@ pub(super) fn write(sink: &mut impl Write, section: &SceneSection) -> io::Result
         writeln!(sink, "</tr>")?;
     }
     writeln!(sink, "</tbody></table></div>")
-}
-
-/// The columns in the order of the page.
-fn shown_columns() -> Vec<&'static Column> {
-    let (stored, derived): (Vec<&Column>, Vec<&Column>) = COLUMNS.iter().partition(|column| column.name != "excess");
-    let mut shown: Vec<_> = stored.into_iter().filter(|column| !SAME_FOR_ALL.contains(&column.name)).collect();
-    let after_floor = shown.iter().position(|column| column.name == "floor_mae").map_or(shown.len(), |i| i + 1);
-    shown.splice(after_floor..after_floor, derived);
-    shown
 }
 
 /// Writes a heading that sorts.
@@ -101,7 +120,7 @@ pub(super) fn write_left_out(sink: &mut impl Write, section: &SceneSection) -> i
         writeln!(sink, "<h3>Failed runs</h3>\n<ul class=\"left-out failed\">")?;
         for row in failed {
             let why = if row.left_out.is_empty() { "no reason given".to_owned() } else { row.left_out.join("\n") };
-            write_line(sink, &why, &[run_name(row)])?;
+            write_line(sink, &why, &[row])?;
         }
         writeln!(sink, "</ul>")?;
     }
@@ -128,13 +147,13 @@ pub(super) fn write_left_out(sink: &mut impl Write, section: &SceneSection) -> i
 const FEW_LINES: usize = 8;
 
 /// Every distinct line in order of appearance, with the runs that reported it.
-fn gather<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<String>)> {
-    let mut lines: Vec<(&str, Vec<String>)> = Vec::new();
+fn gather<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<&'a Row>)> {
+    let mut lines: Vec<(&str, Vec<&Row>)> = Vec::new();
     for row in rows {
         for line in &row.left_out {
             match lines.iter_mut().find(|(known, _)| known == line) {
-                Some((_, runs)) => runs.push(run_name(row)),
-                None => lines.push((line, vec![run_name(row)])),
+                Some((_, runs)) => runs.push(row),
+                None => lines.push((line, vec![row])),
             }
         }
     }
@@ -142,11 +161,39 @@ fn gather<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<String>)> {
 }
 
 /// Writes one line and its runs.
-fn write_line(sink: &mut impl Write, line: &str, runs: &[String]) -> io::Result<()> {
-    writeln!(sink, "<li><q>{}</q> <span class=\"runs\">{}</span></li>", Escaped(line), Escaped(&runs.join(", ")))
+fn write_line(sink: &mut impl Write, line: &str, runs: &[&Row]) -> io::Result<()> {
+    writeln!(sink, "<li><q>{}</q> <span class=\"runs\">{}</span></li>", Escaped(line), Escaped(&run_names(runs)))
 }
 
-/// How a run is called in lists.
-fn run_name(row: &Row) -> String {
-    format!("{} {}", row.technique, row.size)
+/// Names runs, each technique once with its map sizes: `ssm 512, 1024 · psm 512`.
+fn run_names(runs: &[&Row]) -> String {
+    let mut names: Vec<(&str, String)> = Vec::new();
+    for row in runs {
+        match names.last_mut().filter(|(technique, _)| *technique == row.technique) {
+            Some((_, text)) => text.extend([", ", &row.size.to_string()]),
+            None => names.push((&row.technique, format!("{} {}", row.technique, row.size))),
+        }
+    }
+    names.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(" · ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_column_is_shown_but_those_of_the_heading() {
+        for column in &column::COLUMNS {
+            let in_heading = ["scene", "case"].contains(&column.name);
+            assert_eq!(SHOWN.contains(&column.name), !in_heading, "{}", column.name);
+        }
+        assert!(SHOWN.iter().all(|name| column::find(name).is_some()));
+    }
+
+    #[test]
+    fn runs_are_named_by_technique() {
+        let row = |technique: &str, size| Row { technique: technique.into(), size, ..Row::default() };
+        let runs = [row("ssm", 512), row("ssm", 1024), row("psm", 512)];
+        assert_eq!(run_names(&runs.iter().collect::<Vec<_>>()), "ssm 512, 1024 · psm 512");
+    }
 }

@@ -5,9 +5,9 @@ use std::fs;
 use super::*;
 
 /// A grey picture whose left part, up to the given share of the width, is in shadow.
-fn png(share: f32) -> Vec<u8> {
+fn png(share: f64) -> Vec<u8> {
     let picture =
-        image::GrayImage::from_fn(16, 12, |x, _| image::Luma([if (x as f32) < share * 16.0 { 0 } else { 255 }]));
+        image::GrayImage::from_fn(16, 12, |x, _| image::Luma([if f64::from(x) < share * 16.0 { 0 } else { 255 }]));
     let mut bytes = std::io::Cursor::new(Vec::new());
     picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
@@ -76,9 +76,7 @@ fn every_row_and_every_line_is_on_the_page() {
     assert_eq!(page.matches("<th scope=\"row\">").count(), 4);
     assert_eq!(page.matches("<tr class=\"failed\">").count(), 1);
     assert!(page.contains("<q>adapter lost &lt;mid-run&gt;</q>"));
-    assert!(
-        page.contains("<q>view 1: &lt;ssm&gt; &amp; no receivers</q> <span class=\"runs\">ssm 512, ssm 1024</span>")
-    );
+    assert!(page.contains("<q>view 1: &lt;ssm&gt; &amp; no receivers</q> <span class=\"runs\">ssm 512, 1024</span>"));
     assert!(page.contains("data-v=\"NaN\">NaN</td>"));
     assert!(page.contains("<b>1</b> failed run"));
     // The plots say which run they do not show.
