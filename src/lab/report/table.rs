@@ -127,7 +127,12 @@ pub(super) fn write_left_out(sink: &mut impl Write, section: &SceneSection) -> i
     let lines = gather(&fine);
     writeln!(sink, "<h3>What was left out</h3>")?;
     if lines.is_empty() {
-        return writeln!(sink, "<p class=\"hint\">Nothing: no technique skipped, clamped or replaced a step here.</p>");
+        let what = if fine.is_empty() {
+            "No run got far enough to tell."
+        } else {
+            "Nothing: no technique skipped, clamped or replaced a step here."
+        };
+        return writeln!(sink, "<p class=\"hint\">{what}</p>");
     }
     writeln!(
         sink,
