@@ -1,5 +1,6 @@
 //! The laboratory: scenes, ray-traced truth, metrics, renderers and reports (feature `lab`).
 pub mod raster;
+pub mod report;
 pub mod scene;
 pub mod shapes;
 pub mod sparse_city;

@@ -1,0 +1,78 @@
+//! The software renderer: z-buffer shadow mapping on the Rust twins of the shaders, for machines without an adapter, and as
+//! the check of those with one.
+//!
+//! # References
+//! - S. Bu, J. Bustos, S. L. Tan, *Implementation and assessment of software-based shadow mapping techniques*: rasterise from
+//!   the light, look up by projecting each pixel into light space (its equations 1 and 2). Erratum GZ-1: its constant bias is
+//!   a threshold, not a low-pass filter; here the bias is the library's own.
+#![allow(clippy::cast_sign_loss, reason = "a visibility in [0, 1] becomes a byte")]
+
+use std::time::Instant;
+
+use glam::{DVec3, UVec2};
+use rayon::prelude::*;
+
+use super::projection::clip_from_render;
+use super::raster::{DepthMode, DepthTarget, Hit, RasterPass, rasterise, resolve};
+use super::scene::SceneModel;
+use super::subject::Subject;
+use crate::camera::Camera;
+use crate::encoding::depth::{DepthMap, antumbra_visible};
+use crate::frame::ShadowFrame;
+
+/// A shadow mask and what it took.
+#[derive(Clone, Debug)]
+pub struct CpuImage {
+    /// Visibility of the light, row 0 on top: 255 lit, 0 in shadow; 255 where there is no geometry.
+    pub mask: Vec<u8>,
+    /// Time to draw the maps, milliseconds.
+    pub casters_ms: f64,
+    /// Time to look every visible point up, milliseconds.
+    pub receivers_ms: f64,
+}
+
+/// What the camera sees, pixel by pixel: the same for every technique, so it is drawn once.
+#[derive(Clone, Debug)]
+pub struct Visible {
+    hits: Vec<Option<Hit>>,
+}
+
+impl Visible {
+    /// Draws the scene from the camera at the size of its viewport.
+    #[must_use]
+    pub fn draw(model: &SceneModel, camera: &Camera, origin: DVec3) -> Self {
+        let clip_from_render = clip_from_render(camera, origin);
+        let pass = RasterPass { clip_from_render: clip_from_render.as_mat4(), depth_from_render: None, origin };
+        let mut target = DepthTarget::new(camera.viewport.x, camera.viewport.y, DepthMode::GreaterEqual);
+        rasterise(&mut target, model, &model.objects, &pass);
+        Self { hits: resolve(&target, model, &clip_from_render.inverse(), origin) }
+    }
+}
+
+/// Draws a frame's maps and looks every visible point up in them.
+#[must_use]
+pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin: DVec3) -> CpuImage {
+    let Some(view) = frame.views.first() else {
+        return CpuImage { mask: vec![u8::MAX; visible.hits.len()], casters_ms: 0.0, receivers_ms: 0.0 };
+    };
+    // Rasterise from the light, every object that may cast.
+    let start = Instant::now();
+    let mut map = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
+    let objects = subject.objects.iter().zip(&subject.model.objects);
+    let casters: Vec<_> =
+        objects.filter(|(object, _)| view.cull.may_cast(&object.bounds)).map(|(_, range)| range.clone()).collect();
+    let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render: None, origin };
+    rasterise(&mut map, &subject.model, &casters, &pass);
+    let casters_ms = start.elapsed().as_secs_f64() * 1e3;
+    // Project each visible point into the map.
+    let start = Instant::now();
+    let map = DepthMap { size: UVec2::new(map.width, map.height), depth: &map.depth };
+    let uniforms = &frame.uniforms.views[0];
+    let filter = frame.wgsl.filter;
+    let lit = |hit: &Option<Hit>| match hit {
+        Some(hit) => antumbra_visible(filter, uniforms, &map, hit.position.as_vec3(), hit.normal.as_vec3()),
+        None => 1.0,
+    };
+    let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();
+    CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
+}

@@ -1,0 +1,141 @@
+//! What is photographed: a scene as the library sees it (bounds and objects), and a setting of camera and light.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::case::{Case, CaseLight, SceneSource};
+use super::gltf::{LoadError, load};
+use super::scene::SceneModel;
+use super::sparse_city::sparse_city;
+use super::treeline::treeline;
+use super::viewpoints::Viewpoint;
+use crate::camera::Camera;
+use crate::light::Light;
+use crate::scene::{Aabb, DepthRange, MapBudget, Object, Scene};
+use crate::technique::FitInput;
+
+/// A scene with the bounds an engine would know.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// The triangles.
+    pub model: SceneModel,
+    /// One per range of `model.objects`.
+    pub objects: Vec<Object>,
+    /// Around everything.
+    pub bounds: Aabb,
+}
+
+impl Subject {
+    /// Finds the bounds of a scene and its objects.
+    #[must_use]
+    pub fn new(model: SceneModel) -> Self {
+        let bounds_of = |triangles: std::ops::Range<usize>| {
+            Aabb::around(model.triangles[triangles].iter().flatten().map(|&index| model.positions[index as usize]))
+        };
+        let objects: Vec<Object> =
+            model.objects.iter().map(|range| Object { bounds: bounds_of(range.clone()), casts: true }).collect();
+        let bounds = objects.iter().fold(Aabb::EMPTY, |all, object| all.union(object.bounds));
+        Self { model, objects, bounds }
+    }
+
+    /// The scene of a case: built in, or from a file.
+    ///
+    /// # Errors
+    /// [`LoadError`] naming the file.
+    pub fn load(source: &SceneSource) -> Result<Self, LoadError> {
+        Ok(Self::new(match source {
+            SceneSource::BuiltIn(name) if name == "treeline" => treeline(),
+            SceneSource::BuiltIn(_) => sparse_city(),
+            SceneSource::File(path) => load(path)?,
+        }))
+    }
+
+    /// The scene of a file.
+    ///
+    /// # Errors
+    /// [`LoadError`] naming the file.
+    pub fn load_file(path: &Path) -> Result<Self, LoadError> {
+        load(path).map(Self::new)
+    }
+}
+
+/// A camera and a light, as the library wants them. Render space has its origin at the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// The camera; its viewport is the size of the picture.
+    pub camera: Camera,
+    /// The light.
+    pub light: Light,
+    /// The eye depths in which shadows are wanted.
+    pub visible: DepthRange,
+    /// Origin of render space.
+    pub origin: DVec3,
+}
+
+impl Setting {
+    /// The setting of a case.
+    #[must_use]
+    pub fn of(case: &Case) -> Self {
+        let [width, height] = case.viewport;
+        let aspect = f64::from(width) / f64::from(height);
+        let fov_y = case.camera.fov_y_deg.to_radians();
+        let mut camera = Camera::perspective(case.world_from_view(), fov_y, aspect, case.camera.near, case.camera.far);
+        camera.viewport = glam::UVec2::new(width, height);
+        let visible = DepthRange { near: case.camera.near, far: case.shadow_distance.max(case.camera.near) };
+        Self { camera, light: light_of(&case.light), visible, origin: case.camera.eye }
+    }
+
+    /// What a technique is given for `subject` and one map of `side × side` texels.
+    #[must_use]
+    pub fn input<'a>(&self, subject: &'a Subject, side: u32) -> FitInput<'a> {
+        FitInput {
+            camera: self.camera,
+            light: self.light,
+            scene: Scene {
+                casters: subject.bounds,
+                receivers: subject.bounds,
+                objects: &subject.objects,
+                visible_depth: Some(self.visible),
+            },
+            map: MapBudget::one(side),
+            origin: self.origin,
+            previous: None,
+        }
+    }
+}
+
+/// A case's light in the library's units.
+fn light_of(light: &CaseLight) -> Light {
+    match *light {
+        CaseLight::Directional { travel } => Light::Directional { travel },
+        CaseLight::Spot { position, travel, half_angle_deg, range } => {
+            Light::Spot { position, travel, half_angle: half_angle_deg.to_radians(), range }
+        }
+        CaseLight::Point { position, range } => Light::Point { position, range },
+    }
+}
+
+/// Pixels of the pictures of built-in viewpoints: the thesis's 800 × 600.
+pub const PICTURE: [u32; 2] = [800, 600];
+
+/// A viewpoint as a case of the scene named `scene`.
+#[must_use]
+pub fn case_of(viewpoint: &Viewpoint, scene: &str) -> Case {
+    Case {
+        name: viewpoint.name.clone(),
+        scene: scene.to_owned(),
+        camera: super::case::CaseCamera {
+            eye: viewpoint.eye,
+            target: viewpoint.target,
+            up: viewpoint.up,
+            fov_y_deg: viewpoint.fov_y.to_degrees(),
+            near: viewpoint.near,
+            far: viewpoint.far,
+        },
+        light: CaseLight::Directional { travel: viewpoint.travel },
+        viewport: PICTURE,
+        shadow_distance: viewpoint.shadow_distance,
+        folder: std::path::PathBuf::new(),
+    }
+}
