@@ -1,0 +1,254 @@
+//! One technique, one setting, one map size: drawn on either backend, timed, and compared with the truth.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::time::Instant;
+
+use super::cpu;
+use super::gpu::{Gpu, GpuScene, RenderOptions, Renderer};
+use super::metrics::{MaskError, Scores, mask_from_bytes};
+use super::report::Row;
+use super::subject::{Setting, Subject};
+use super::truth::Truth;
+use crate::error::FitError;
+use crate::frame::{ShadowFrame, WgslKey};
+use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
+use crate::remix::{Encoding, Remix, Stabilise, Warp};
+use crate::technique::ShadowTechnique;
+
+/// Which renderer is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackendChoice {
+    /// The GPU, or the software renderer where there is none.
+    #[default]
+    Auto,
+    /// The GPU, or an error.
+    Gpu,
+    /// The software renderer.
+    Cpu,
+}
+
+/// A renderer.
+#[derive(Debug)]
+pub enum Backend {
+    /// Any wgpu adapter, with the pipelines of each shader key that was used.
+    Gpu(Box<Gpu>, HashMap<WgslKey, Renderer>),
+    /// The software renderer.
+    Cpu,
+}
+
+/// A run that gave no picture, in one line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunError {
+    /// The technique refused its input.
+    Fit(FitError),
+    /// The renderer failed.
+    Render(String),
+    /// The picture does not fit the truth.
+    Mask(MaskError),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fit(error) => write!(f, "{error}"),
+            Self::Render(error) => write!(f, "{error}"),
+            Self::Mask(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+impl Backend {
+    /// Opens a renderer; with `Auto`, also says why the GPU is not used if it is not.
+    ///
+    /// # Errors
+    /// One line, when a GPU was asked for and there is none.
+    pub fn open(choice: BackendChoice) -> Result<(Self, Option<String>), String> {
+        if choice == BackendChoice::Cpu {
+            return Ok((Self::Cpu, None));
+        }
+        match Gpu::new() {
+            Ok(gpu) => Ok((Self::Gpu(Box::new(gpu), HashMap::new()), None)),
+            Err(error) if choice == BackendChoice::Auto => Ok((Self::Cpu, Some(error.to_string()))),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// `gpu` or `cpu`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Gpu(..) => "gpu",
+            Self::Cpu => "cpu",
+        }
+    }
+
+    /// Name of the adapter, or of the software renderer.
+    #[must_use]
+    pub fn adapter(&self) -> String {
+        match self {
+            Self::Gpu(gpu, _) => gpu.adapter().to_owned(),
+            Self::Cpu => format!("software renderer, {} threads", rayon::current_num_threads()),
+        }
+    }
+}
+
+/// A subject in a setting, ready to be drawn again and again.
+#[derive(Debug)]
+pub struct Studio<'a> {
+    backend: &'a mut Backend,
+    subject: &'a Subject,
+    setting: Setting,
+    scene: Prepared,
+}
+
+/// The scene as the backend wants it.
+#[derive(Debug)]
+enum Prepared {
+    Gpu(GpuScene),
+    Cpu(cpu::Visible),
+}
+
+/// A picture of the visibility of the light, and what it took.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// 255 lit, 0 in shadow, sky 255; row 0 on top.
+    pub mask: Vec<u8>,
+    /// What was fitted.
+    pub frame: ShadowFrame,
+    /// Median time of a fit, nanoseconds.
+    pub fit_ns: f64,
+    /// Drawing the maps, milliseconds.
+    pub casters_ms: f64,
+    /// Filtering them, milliseconds.
+    pub filter_ms: f64,
+    /// Looking every visible point up, milliseconds.
+    pub receivers_ms: f64,
+    /// Memory of the maps, bytes.
+    pub bytes: u64,
+}
+
+/// Fits that are timed together: one takes about as long as reading the clock forty times.
+const FIT_BATCH: u32 = 16;
+
+/// Batches of which the median is reported.
+const FIT_BATCHES: usize = 31;
+
+/// Bytes of a texel of a depth map.
+const DEPTH_BYTES: u64 = 4;
+
+impl<'a> Studio<'a> {
+    /// Uploads the scene (GPU) or draws what the camera sees (CPU).
+    ///
+    /// # Errors
+    /// The device cannot hold the scene.
+    pub fn new(backend: &'a mut Backend, subject: &'a Subject, setting: Setting) -> Result<Self, RunError> {
+        let scene = match backend {
+            Backend::Gpu(gpu, _) => Prepared::Gpu(
+                GpuScene::upload(gpu, &subject.model, setting.origin).map_err(|error| RunError::Render(error.to_string()))?,
+            ),
+            Backend::Cpu => Prepared::Cpu(cpu::Visible::draw(&subject.model, &setting.camera, setting.origin)),
+        };
+        Ok(Self { backend, subject, setting, scene })
+    }
+
+    /// Fits a technique, draws it, and times every step; `repetitions` of each pass, medians.
+    ///
+    /// # Errors
+    /// The technique refused its input, or the renderer failed.
+    pub fn shoot(&mut self, technique: &dyn ShadowTechnique, side: u32, repetitions: u32) -> Result<Shot, RunError> {
+        let input = self.setting.input(self.subject, side);
+        let frame = technique.fit(&input).map_err(RunError::Fit)?;
+        let fit_ns = median_fit_ns(|| technique.fit(&input).is_ok());
+        match (&mut *self.backend, &self.scene) {
+            (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) => {
+                let renderer = renderers.entry(frame.wgsl).or_insert_with(|| Renderer::new(gpu, frame.wgsl));
+                let descriptor = ShadowMapsDescriptor { label: "antumbra lab", key: frame.wgsl, map: input.map };
+                let failed = |error: &dyn fmt::Display| RunError::Render(error.to_string());
+                let maps = ShadowMaps::new(gpu.device(), &descriptor).map_err(|error| failed(&error))?;
+                let options = RenderOptions { repetitions };
+                let image = renderer
+                    .render(gpu, scene, &self.setting.camera, &frame, &maps, &options)
+                    .map_err(|error| failed(&error))?;
+                let times = image.timings;
+                let (casters_ms, filter_ms, receivers_ms) = (times.casters_ms, times.filter_ms, times.receivers_ms);
+                Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms, receivers_ms, bytes: maps.bytes() })
+            }
+            (_, Prepared::Cpu(visible)) => {
+                let image = cpu::render(self.subject, visible, &frame, self.setting.origin);
+                let bytes = DEPTH_BYTES * texels(&frame);
+                let (casters_ms, receivers_ms) = (image.casters_ms, image.receivers_ms);
+                Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms: 0.0, receivers_ms, bytes })
+            }
+            (Backend::Cpu, Prepared::Gpu(_)) => Err(RunError::Render("the scene was prepared for a GPU".to_owned())),
+        }
+    }
+}
+
+impl Shot {
+    /// Compares the picture with the truth.
+    ///
+    /// # Errors
+    /// The picture has another size than the truth.
+    pub fn scores(&self, truth: &Truth) -> Result<Scores, RunError> {
+        Scores::new(&mask_from_bytes(&self.mask), truth).map_err(RunError::Mask)
+    }
+
+    /// Writes times, sizes and errors into a row whose names are already there.
+    pub fn fill(&self, row: &mut Row, scores: &Scores) {
+        row.views = u32::try_from(self.frame.views.len()).unwrap_or(u32::MAX);
+        row.texels = texels(&self.frame);
+        row.bytes = self.bytes;
+        row.fit_ns = self.fit_ns;
+        row.casters_ms = self.casters_ms;
+        row.filter_ms = self.filter_ms;
+        row.receivers_ms = self.receivers_ms;
+        row.total_ms = self.fit_ns * 1e-6 + self.casters_ms + self.filter_ms + self.receivers_ms;
+        row.rmse = scores.rmse;
+        row.mae = scores.mae;
+        row.floor_mae = scores.floor_mae;
+        row.wrong = scores.wrong;
+        row.wrong_center = scores.wrong_center;
+        row.edge_center_px = scores.edge_center_px.unwrap_or(f64::NAN);
+        row.leak_edge = scores.leak_edge;
+        row.leak_interior = scores.leak_interior;
+        row.false_edge = scores.false_edge;
+        row.false_interior = scores.false_interior;
+        row.predicted_px = f64::from(self.frame.predicted.max);
+        row.left_out = self.frame.left_out.iter().map(ToString::to_string).collect();
+    }
+}
+
+/// Names of a remix's stages: split, warp, encoding.
+#[must_use]
+pub fn stage_names(remix: &Remix) -> [String; 3] {
+    let Encoding::Depth(filter) = remix.encoding;
+    let warp = match remix.warp {
+        Warp::Uniform => "uniform",
+        Warp::Focused => "focused",
+    };
+    let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };
+    ["one map".to_owned(), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
+}
+
+/// Texels of a frame's views.
+fn texels(frame: &ShadowFrame) -> u64 {
+    frame.views.iter().map(|view| u64::from(view.viewport.z) * u64::from(view.viewport.w)).sum()
+}
+
+/// Median over batches of the mean time of a call, nanoseconds.
+fn median_fit_ns(mut fit: impl FnMut() -> bool) -> f64 {
+    let mut batches: Vec<f64> = (0..FIT_BATCHES)
+        .map(|_| {
+            let start = Instant::now();
+            for _ in 0..FIT_BATCH {
+                std::hint::black_box(fit());
+            }
+            start.elapsed().as_secs_f64() * 1e9 / f64::from(FIT_BATCH)
+        })
+        .collect();
+    batches.sort_by(f64::total_cmp);
+    batches[FIT_BATCHES / 2]
+}
