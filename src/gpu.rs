@@ -174,7 +174,7 @@ impl ShadowMaps {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let caster_layout = caster_layout(device, label);
+        let caster_layout = caster_layout(device);
         let caster_bind_group = caster_bind_group(device, label, &caster_layout, &casters);
         Ok(Self {
             key,
@@ -435,9 +435,11 @@ fn lit_uniforms(device: &wgpu::Device, label: Option<&str>) -> wgpu::Buffer {
     buffer
 }
 
-fn caster_layout(device: &wgpu::Device, label: Option<&str>) -> wgpu::BindGroupLayout {
+/// Layout of [`ShadowMaps::caster_bind_group`], for pipelines that are built before the maps.
+#[must_use]
+pub fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label,
+        label: Some("antumbra casters"),
         entries: &[wgpu::BindGroupLayoutEntry {
             binding: 0,
             visibility: wgpu::ShaderStages::VERTEX,
