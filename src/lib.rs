@@ -12,6 +12,8 @@ mod error;
 mod fit;
 mod focus;
 mod frame;
+#[cfg(feature = "wgpu")]
+pub mod gpu;
 mod light;
 mod light_space;
 mod math;
@@ -20,6 +22,8 @@ mod report;
 mod scene;
 mod technique;
 pub mod techniques;
+#[cfg(feature = "naga")]
+pub mod transpile;
 mod warp;
 pub mod wgsl;
 

@@ -38,15 +38,16 @@ impl CompareMap for DepthMap<'_> {
         let base = at.floor();
         // Samplers keep eight bits of the fraction.
         let fraction = ((at - base) * SUB_TEXELS).round() / SUB_TEXELS;
-        let last = self.size.as_ivec2() - 1;
-        let lit = |dx: i32, dy: i32| {
-            let texel = (base.as_ivec2() + glam::IVec2::new(dx, dy)).clamp(glam::IVec2::ZERO, last).as_uvec2();
+        let last = self.size.as_vec2() - 1.0;
+        let lit = |dx: f32, dy: f32| {
+            // Clamped before it is narrowed: hostile coordinates do not fit an integer.
+            let texel = (base + Vec2::new(dx, dy)).clamp(Vec2::ZERO, last).as_uvec2();
             let stored = self.depth[(texel.y * self.size.x + texel.x) as usize];
             if depth <= stored { 1.0 } else { 0.0 }
         };
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        let above = mix(lit(0, 0), lit(1, 0), fraction.x);
-        let below = mix(lit(0, 1), lit(1, 1), fraction.x);
+        let above = mix(lit(0.0, 0.0), lit(1.0, 0.0), fraction.x);
+        let below = mix(lit(0.0, 1.0), lit(1.0, 1.0), fraction.x);
         mix(above, below, fraction.y)
     }
 }

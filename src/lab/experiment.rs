@@ -165,7 +165,7 @@ impl<'a> Studio<'a> {
         match (&mut *self.backend, &self.scene) {
             (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) => {
                 let renderer = renderers.entry(frame.wgsl).or_insert_with(|| Renderer::new(gpu, frame.wgsl));
-                let descriptor = ShadowMapsDescriptor { label: "antumbra lab", key: frame.wgsl, map: input.map };
+                let descriptor = ShadowMapsDescriptor { label: Some("antumbra lab"), key: frame.wgsl, map: input.map };
                 let failed = |error: &dyn fmt::Display| RunError::Render(error.to_string());
                 let maps = ShadowMaps::new(gpu.device(), &descriptor).map_err(|error| failed(&error))?;
                 let options = RenderOptions { repetitions };

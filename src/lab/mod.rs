@@ -1,14 +1,20 @@
 //! The laboratory: scenes, ray-traced truth, metrics, renderers and reports (feature `lab`).
+pub mod bvh;
+pub mod case;
+pub mod cli;
+pub mod cpu;
+pub mod experiment;
+pub mod files;
+pub mod gltf;
+pub mod gpu;
+pub mod metrics;
+pub mod projection;
 pub mod raster;
 pub mod report;
 pub mod scene;
 pub mod shapes;
 pub mod sparse_city;
+pub mod subject;
 pub mod treeline;
-pub mod viewpoints;
-pub mod bvh;
-pub mod case;
-pub mod gltf;
-pub mod metrics;
-pub mod scene;
 pub mod truth;
+pub mod viewpoints;

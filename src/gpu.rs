@@ -1,0 +1,468 @@
+//! Feature `wgpu`: the textures, bind groups and passes of one light's shadow maps.
+//!
+//! Middleware: the device, the queue, the encoder and every submission belong to the engine. Nothing here creates a
+//! device, submits, polls or waits, and after [`ShadowMaps::new`] nothing allocates beyond what wgpu does when it is told
+//! to upload and to begin a pass.
+//!
+//! The map keeps its own depth convention (0 nearest to the light), so it serves engines with reversed depth unchanged.
+//!
+//! ```no_run
+//! use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor, wgpu};
+//! use antumbra::{FitInput, ShadowTechnique, wgsl};
+//!
+//! # fn engine(device: &wgpu::Device, queue: &wgpu::Queue, technique: &dyn ShadowTechnique, input: &FitInput,
+//! #     casters: &wgpu::RenderPipeline, draw: &dyn Fn(&mut wgpu::RenderPass)) -> Result<(), Box<dyn std::error::Error>> {
+//! // When options change: maps, and the text that goes in front of the lighting shader.
+//! let key = technique.wgsl_key();
+//! let maps = ShadowMaps::new(device, &ShadowMapsDescriptor { label: Some("sun"), key, map: input.map })?;
+//! let lighting = wgsl::module(key, wgsl::Bindings { group: 2, first: 0 }); // + the engine's own text
+//! // Every frame: fit, upload, draw casters.
+//! let frame = technique.fit(input)?;
+//! maps.prepare(queue, &frame)?;
+//! let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+//! for (index, view) in frame.views.iter().enumerate() {
+//!     let mut pass = maps.caster_pass(&mut encoder, view, None);
+//!     pass.set_pipeline(casters); // built with `gpu::depth_stencil_state()` and `maps.caster_layout()`
+//!     pass.set_bind_group(0, maps.caster_bind_group(), &[maps.caster_offset(index)]);
+//!     draw(&mut pass); // the objects for which `view.cull.may_cast` holds
+//! }
+//! // In the engine's own pass: `pass.set_bind_group(2, maps.bind_group(), &[])`.
+//! queue.submit([encoder.finish()]);
+//! # let _ = lighting; Ok(())
+//! # }
+//! ```
+
+use core::fmt;
+use core::num::NonZeroU64;
+
+use glam::UVec4;
+pub use wgpu;
+
+use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUniforms, WgslKey};
+use crate::scene::MapBudget;
+
+/// Format of a depth map: the precision that the bias is computed for.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Bytes of a texel of [`DEPTH_FORMAT`].
+const DEPTH_TEXEL_BYTES: u64 = 4;
+
+/// Bytes of the matrix that a caster's vertex shader reads.
+const CASTER_BYTES: u64 = size_of::<glam::Mat4>() as u64;
+
+/// What [`ShadowMaps::new`] makes.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowMapsDescriptor<'a> {
+    /// Name in graphics debuggers.
+    pub label: Option<&'a str>,
+    /// The shader text that will read the maps.
+    pub key: WgslKey,
+    /// The texels. A key for one view uses one layer and one view, whatever the budget allows.
+    pub map: MapBudget,
+}
+
+/// What does not fit together. One line each: what is there, and what was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// The frame is for another shader text than the maps were made for.
+    Key {
+        /// The key that the maps were made for.
+        expected: WgslKey,
+        /// The frame's key.
+        actual: WgslKey,
+    },
+    /// The maps would be larger than the device allows, or empty.
+    Side {
+        /// The side that was asked for, texels.
+        side: u32,
+        /// The device's largest side, texels.
+        largest: u32,
+    },
+    /// The frame has more views than the maps have room for.
+    Views {
+        /// Views of the frame.
+        views: usize,
+        /// Most views that the maps hold.
+        most: usize,
+    },
+    /// A view's rectangle or layer lies outside the maps: they were made for a smaller budget than the frame.
+    Viewport {
+        /// Number of the view.
+        view: usize,
+        /// Its x, y, width and height, texels.
+        viewport: UVec4,
+        /// Its layer.
+        layer: u32,
+        /// Side of the maps, texels.
+        side: u32,
+    },
+}
+
+impl fmt::Display for GpuError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Key { expected, actual } => {
+                write!(f, "frame.wgsl is {actual:?}; legal: the key of these maps, {expected:?}")
+            }
+            Self::Side { side, largest } => {
+                write!(f, "map.side is {side}; legal: 1 to {largest} texels on this device")
+            }
+            Self::Views { views, most } => {
+                write!(f, "frame.views has {views} views; legal: at most {most} in these maps")
+            }
+            Self::Viewport { view, viewport: at, layer, side } => write!(
+                f,
+                "frame.views[{view}].viewport is {}x{} texels at ({}, {}) of layer {layer}; legal: inside layer 0 of \
+                 {side}x{side} texels",
+                at.z, at.w, at.x, at.y
+            ),
+        }
+    }
+}
+
+impl core::error::Error for GpuError {}
+
+/// The maps of one light, and everything that reads and writes them.
+#[derive(Debug)]
+pub struct ShadowMaps {
+    key: WgslKey,
+    side: u32,
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    compare: wgpu::Sampler,
+    uniforms: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
+    bind_group: wgpu::BindGroup,
+    casters: wgpu::Buffer,
+    caster_stride: u32,
+    caster_layout: wgpu::BindGroupLayout,
+    caster_bind_group: wgpu::BindGroup,
+}
+
+impl ShadowMaps {
+    /// Makes the maps and their bind groups. Until the first [`prepare`](Self::prepare) everything reads lit.
+    ///
+    /// # Errors
+    /// [`GpuError::Side`] when the device cannot hold a map of that side.
+    pub fn new(device: &wgpu::Device, descriptor: &ShadowMapsDescriptor) -> Result<Self, GpuError> {
+        let ShadowMapsDescriptor { label, key, map } = *descriptor;
+        let largest = device.limits().max_texture_dimension_2d;
+        if !(1..=largest).contains(&map.side) {
+            return Err(GpuError::Side { side: map.side, largest });
+        }
+        // The map, and the sampler that compares with it.
+        let texture = depth_texture(device, label, map.side);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor { label, ..Default::default() });
+        let compare = device.create_sampler(&comparison_sampler(label));
+        // What receivers read.
+        let uniforms = lit_uniforms(device, label);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label,
+            entries: &layout_entries(key, 0, wgpu::ShaderStages::FRAGMENT),
+        });
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label,
+            layout: &layout,
+            entries: &bind_entries(key, 0, &uniforms, &view, &compare),
+        });
+        // What casters read: one matrix per view, at dynamic offsets.
+        let caster_stride = device.limits().min_uniform_buffer_offset_alignment.max(CASTER_BYTES as u32);
+        let casters = device.create_buffer(&wgpu::BufferDescriptor {
+            label,
+            size: u64::from(caster_stride) * most_views(key) as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let caster_layout = caster_layout(device);
+        let caster_bind_group = caster_bind_group(device, label, &caster_layout, &casters);
+        Ok(Self {
+            key,
+            side: map.side,
+            texture,
+            view,
+            compare,
+            uniforms,
+            layout,
+            bind_group,
+            casters,
+            caster_stride,
+            caster_layout,
+            caster_bind_group,
+        })
+    }
+
+    /// Uploads a frame: the uniforms of the views that the key's shader reads (128 bytes each), and each view's matrix.
+    ///
+    /// A frame without views uploads "everything is lit", and its map need not be drawn.
+    ///
+    /// # Errors
+    /// The frame does not fit these maps; nothing was uploaded.
+    pub fn prepare(&self, queue: &wgpu::Queue, frame: &ShadowFrame) -> Result<(), GpuError> {
+        // Refuse what the maps were not made for.
+        if frame.wgsl != self.key {
+            return Err(GpuError::Key { expected: self.key, actual: frame.wgsl });
+        }
+        let (views, most) = (frame.views.len(), most_views(self.key));
+        if views > most {
+            return Err(GpuError::Views { views, most });
+        }
+        for (index, view) in frame.views.iter().enumerate() {
+            self.check_viewport(index, view)?;
+        }
+        // Upload.
+        let bytes = bytemuck::bytes_of(&frame.uniforms);
+        queue.write_buffer(&self.uniforms, 0, &bytes[..uniform_bytes(self.key) as usize]);
+        for (index, view) in frame.views.iter().enumerate() {
+            let offset = u64::from(self.caster_offset(index));
+            queue.write_buffer(&self.casters, offset, bytemuck::bytes_of(&view.clip_from_render));
+        }
+        Ok(())
+    }
+
+    fn check_viewport(&self, index: usize, view: &ShadowView) -> Result<(), GpuError> {
+        let at = view.viewport;
+        let inside = |start: u32, length: u32| start.checked_add(length).is_some_and(|end| end <= self.side);
+        if view.layer == 0 && inside(at.x, at.z) && inside(at.y, at.w) {
+            return Ok(());
+        }
+        Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side })
+    }
+
+    /// Begins the depth pass of a view: cleared to the farthest depth, its viewport set. The engine binds, and draws.
+    pub fn caster_pass<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        view: &ShadowView,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("antumbra casters"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let [x, y, width, height] = view.viewport.as_vec4().to_array();
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        pass
+    }
+
+    /// The key that these maps were made for: pipelines that read them need [`wgsl::module`](crate::wgsl::module) of it.
+    #[must_use]
+    pub fn key(&self) -> WgslKey {
+        self.key
+    }
+
+    /// Layout of [`bind_group`](Self::bind_group): three bindings from 0 on, visible to fragment shaders.
+    /// Engines that merge groups take [`layout_entries`] and [`bind_entries`](Self::bind_entries) instead.
+    #[must_use]
+    pub fn bind_group_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// What `antumbra_visibility` reads, for shader text made with `Bindings { group, first: 0 }`.
+    #[must_use]
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.bind_group
+    }
+
+    /// The entries that match [`layout_entries`], for a bind group of the engine's own.
+    #[must_use]
+    pub fn bind_entries(&self, first: u32) -> [wgpu::BindGroupEntry<'_>; 3] {
+        bind_entries(self.key, first, &self.uniforms, &self.view, &self.compare)
+    }
+
+    /// Layout of [`caster_bind_group`](Self::caster_bind_group): binding 0, `var<uniform> clip_from_render: mat4x4f` at a
+    /// dynamic offset, visible to vertex shaders.
+    #[must_use]
+    pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.caster_layout
+    }
+
+    /// The views' matrices, for engines that do not bring their own.
+    #[must_use]
+    pub fn caster_bind_group(&self) -> &wgpu::BindGroup {
+        &self.caster_bind_group
+    }
+
+    /// The dynamic offset of a view's matrix in [`caster_bind_group`](Self::caster_bind_group). Views beyond the last
+    /// that the maps hold get the last one's.
+    #[must_use]
+    pub fn caster_offset(&self, view: usize) -> u32 {
+        self.caster_stride * view.min(most_views(self.key) - 1) as u32
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn depth_texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
+
+    /// The whole map, as an attachment or a `texture_depth_2d`.
+    #[must_use]
+    pub fn depth_view(&self) -> &wgpu::TextureView {
+        &self.view
+    }
+
+    /// Memory of the maps, bytes (texels only: what drivers add is not known here).
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        u64::from(self.side) * u64::from(self.side) * DEPTH_TEXEL_BYTES
+    }
+}
+
+/// Features that the maps of a key need from the device: none for depth maps.
+#[must_use]
+pub fn required_features(_key: WgslKey) -> wgpu::Features {
+    wgpu::Features::empty()
+}
+
+/// How casters are written: nearest wins, no hardware bias (the receiver's bias is exact, and a second one would only
+/// detach shadows).
+#[must_use]
+pub fn depth_stencil_state() -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::LessEqual),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's own:
+/// uniforms, map, comparison sampler.
+#[must_use]
+pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 3] {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding: first + binding, visibility, ty, count: None };
+    [
+        entry(
+            0,
+            wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: NonZeroU64::new(uniform_bytes(key)),
+            },
+        ),
+        entry(
+            1,
+            wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+        ),
+        entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+    ]
+}
+
+/// Bytes of `AntumbraUniforms` for a key: one view.
+fn uniform_bytes(_key: WgslKey) -> u64 {
+    size_of::<ViewUniforms>() as u64
+}
+
+/// Most views of a key's frames: one.
+fn most_views(_key: WgslKey) -> usize {
+    1
+}
+
+fn bind_entries<'a>(
+    key: WgslKey,
+    first: u32,
+    uniforms: &'a wgpu::Buffer,
+    view: &'a wgpu::TextureView,
+    compare: &'a wgpu::Sampler,
+) -> [wgpu::BindGroupEntry<'a>; 3] {
+    let block = wgpu::BufferBinding { buffer: uniforms, offset: 0, size: NonZeroU64::new(uniform_bytes(key)) };
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding: first + binding, resource };
+    [
+        entry(0, wgpu::BindingResource::Buffer(block)),
+        entry(1, wgpu::BindingResource::TextureView(view)),
+        entry(2, wgpu::BindingResource::Sampler(compare)),
+    ]
+}
+
+/// `COPY_SRC` costs nothing and lets engines and tests read the map back.
+fn depth_texture(device: &wgpu::Device, label: Option<&str>, side: u32) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label,
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+/// Bilinear comparison: lit where the receiver is not farther than the texel.
+fn comparison_sampler(label: Option<&str>) -> wgpu::SamplerDescriptor<'_> {
+    wgpu::SamplerDescriptor {
+        label,
+        address_mode_u: wgpu::AddressMode::ClampToEdge,
+        address_mode_v: wgpu::AddressMode::ClampToEdge,
+        address_mode_w: wgpu::AddressMode::ClampToEdge,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        compare: Some(wgpu::CompareFunction::LessEqual),
+        ..Default::default()
+    }
+}
+
+/// A uniform buffer in which nothing is shadowed.
+fn lit_uniforms(device: &wgpu::Device, label: Option<&str>) -> wgpu::Buffer {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label,
+        size: size_of::<ShadowUniforms>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: true,
+    });
+    let lit = ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] };
+    // A buffer mapped at creation is mapped; a lost device leaves it unwritten, and draws nothing anyway.
+    if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.copy_from_slice(bytemuck::bytes_of(&lit));
+    }
+    buffer.unmap();
+    buffer
+}
+
+/// Layout of [`ShadowMaps::caster_bind_group`], for pipelines that are built before the maps.
+#[must_use]
+pub fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("antumbra casters"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: NonZeroU64::new(CASTER_BYTES),
+            },
+            count: None,
+        }],
+    })
+}
+
+fn caster_bind_group(
+    device: &wgpu::Device,
+    label: Option<&str>,
+    layout: &wgpu::BindGroupLayout,
+    casters: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let matrix = wgpu::BufferBinding { buffer: casters, offset: 0, size: NonZeroU64::new(CASTER_BYTES) };
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label,
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(matrix) }],
+    })
+}

@@ -1,0 +1,24 @@
+// Casters: group 0 is the view's matrix.
+@group(0) @binding(0) var<uniform> clip_from_render: mat4x4f;
+
+struct Cut {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+}
+
+@vertex
+fn cast(@location(0) position: vec3f) -> @builtin(position) vec4f {
+    return antumbra_caster(clip_from_render, position);
+}
+
+@vertex
+fn cast_cut(@location(0) position: vec3f, @location(2) uv: vec2f) -> Cut {
+    return Cut(antumbra_caster(clip_from_render, position), uv);
+}
+
+@fragment
+fn cut(surface: Cut) {
+    if is_hole(surface.uv) {
+        discard;
+    }
+}

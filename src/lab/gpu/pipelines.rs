@@ -1,0 +1,219 @@
+//! Pipelines: solid triangles and triangles with cut-outs, for every pass.
+
+use wgpu::VertexFormat::{Float32x2, Float32x3, Snorm16x4};
+
+use super::{Gpu, scene::Attributes};
+use crate::frame::WgslKey;
+use crate::gpu;
+use crate::wgsl::{self, Bindings};
+
+/// Format of the picture: visibility, 0 to 1.
+pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// The camera's passes: what they share.
+pub(super) const STAGE: &str = concat!(include_str!("stage.wgsl"), include_str!("cutout.wgsl"));
+
+/// A pass for solid triangles, and the same for triangles with cut-outs.
+#[derive(Debug)]
+pub(super) struct Pair {
+    pub(super) solid: wgpu::RenderPipeline,
+    pub(super) cut: wgpu::RenderPipeline,
+}
+
+/// How the two pipelines of a pair differ, and all that they share.
+pub(super) struct PairDescriptor<'a> {
+    pub(super) label: &'static str,
+    pub(super) text: &'a str,
+    /// Bind groups 0 and 1; 2 is the cut-out's.
+    pub(super) groups: [Option<&'a wgpu::BindGroupLayout>; 2],
+    /// Vertex and fragment entry points; solid depth passes have no fragment shader at all.
+    pub(super) solid: (&'static str, Option<&'static str>),
+    pub(super) cut: (&'static str, &'static str),
+    pub(super) depth: wgpu::DepthStencilState,
+    /// The picture's format; none for depth passes.
+    pub(super) target: Option<wgpu::TextureFormat>,
+}
+
+/// The library's pass over casters: its layout, its matrix, its vertex function.
+pub(super) fn casters(gpu: &Gpu, caster_layout: &wgpu::BindGroupLayout) -> Pair {
+    let text = [wgsl::CASTER, include_str!("cutout.wgsl"), include_str!("casters.wgsl")].concat();
+    caster_pair(gpu, "casters", &text, caster_layout)
+}
+
+/// A caster pair of any text with the entry points `cast`, `cast_cut` and `cut`.
+pub(super) fn caster_pair(gpu: &Gpu, label: &'static str, text: &str, layout: &wgpu::BindGroupLayout) -> Pair {
+    pair(
+        gpu,
+        &PairDescriptor {
+            label,
+            text,
+            groups: [Some(layout), None],
+            solid: ("cast", None),
+            cut: ("cast_cut", "cut"),
+            depth: gpu::depth_stencil_state(),
+            target: None,
+        },
+    )
+}
+
+/// The camera's depth.
+pub(super) fn camera_depth(gpu: &Gpu) -> Pair {
+    pair(
+        gpu,
+        &PairDescriptor {
+            label: "camera depth",
+            text: STAGE,
+            groups: [Some(&camera_layout(gpu.device())), None],
+            solid: ("place_depth", None),
+            cut: ("place_cut", "cut_depth"),
+            depth: camera_depth_state(true),
+            target: None,
+        },
+    )
+}
+
+/// Receivers that call `antumbra_visibility`.
+pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
+    let library = wgsl::module(key, Bindings { group: 1, first: 0 });
+    let text = [library.as_str(), STAGE, include_str!("receivers.wgsl")].concat();
+    let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("maps"),
+        entries: &gpu::layout_entries(key, 0, wgpu::ShaderStages::FRAGMENT),
+    });
+    receiver_pair(gpu, "receivers", &text, &maps)
+}
+
+/// A receiver pair of any text with the entry points `receive` and `receive_cut` beside [`STAGE`].
+pub(super) fn receiver_pair(gpu: &Gpu, label: &'static str, text: &str, maps: &wgpu::BindGroupLayout) -> Pair {
+    pair(
+        gpu,
+        &PairDescriptor {
+            label,
+            text,
+            groups: [Some(&camera_layout(gpu.device())), Some(maps)],
+            solid: ("place", Some("receive")),
+            cut: ("place_cut", "receive_cut"),
+            depth: camera_depth_state(false),
+            target: Some(MASK_FORMAT),
+        },
+    )
+}
+
+/// Reversed depth: nearer is greater. Receivers pass where they are what the depth pass left.
+fn camera_depth_state(write: bool) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        depth_write_enabled: Some(write),
+        depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+        ..gpu::depth_stencil_state()
+    }
+}
+
+fn pair(gpu: &Gpu, descriptor: &PairDescriptor) -> Pair {
+    let device = gpu.device();
+    let label = Some(descriptor.label);
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label,
+        source: wgpu::ShaderSource::Wgsl(descriptor.text.into()),
+    });
+    let cutout = cutout_layout(device);
+    let make = |vertex: &str, fragment: Option<&str>, third: Option<&wgpu::BindGroupLayout>| {
+        let [first, second] = descriptor.groups;
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[first, second, third],
+            immediate_size: 0,
+        });
+        let target = descriptor.target.map(wgpu::ColorTargetState::from);
+        let targets: &[_] = if target.is_some() { &[target] } else { &[] };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label,
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &vertex_buffers(),
+            },
+            // Both sides of every triangle: foliage and cloth have no inside.
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(descriptor.depth.clone()),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: fragment.map(|entry_point| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    };
+    Pair {
+        solid: make(descriptor.solid.0, descriptor.solid.1, None),
+        cut: make(descriptor.cut.0, Some(descriptor.cut.1), Some(&cutout)),
+    }
+}
+
+/// Positions, and all other attributes.
+fn vertex_buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
+    const POSITION: [wgpu::VertexAttribute; 1] =
+        [wgpu::VertexAttribute { format: Float32x3, offset: 0, shader_location: 0 }];
+    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = [
+        wgpu::VertexAttribute { format: Snorm16x4, offset: 0, shader_location: 1 },
+        wgpu::VertexAttribute { format: Float32x2, offset: 8, shader_location: 2 },
+    ];
+    let buffer = |array_stride: usize, attributes| {
+        Some(wgpu::VertexBufferLayout {
+            array_stride: array_stride as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes,
+        })
+    };
+    [buffer(size_of::<glam::Vec3>(), &POSITION), buffer(size_of::<Attributes>(), &ATTRIBUTES)]
+}
+
+/// Group 0 of the camera's passes.
+pub(super) fn camera_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entries = [uniform_entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT, false)];
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("camera"), entries: &entries })
+}
+
+/// Group 2 of every pass over cut-outs.
+pub(super) fn cutout_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let visibility = wgpu::ShaderStages::FRAGMENT;
+    let mask = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let entries = [
+        uniform_entry(0, visibility, false),
+        wgpu::BindGroupLayoutEntry { binding: 1, visibility, ty: mask, count: None },
+        wgpu::BindGroupLayoutEntry { binding: 2, visibility, ty: sampler, count: None },
+    ];
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("cut-out"), entries: &entries })
+}
+
+/// A uniform buffer's entry.
+pub(super) fn uniform_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    has_dynamic_offset: bool,
+) -> wgpu::BindGroupLayoutEntry {
+    let ty =
+        wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None };
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+/// A uniform buffer with contents.
+pub(super) fn uniform_buffer(gpu: &Gpu, label: &'static str, bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue().write_buffer(&buffer, 0, bytes);
+    buffer
+}

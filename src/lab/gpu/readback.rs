@@ -1,0 +1,56 @@
+//! From the GPU to memory.
+
+use glam::UVec2;
+
+use super::{Gpu, GpuFailure};
+use crate::gpu::ShadowMaps;
+
+/// The contents of a map: depths row by row, row 0 on top.
+///
+/// # Errors
+/// The device failed.
+pub fn read_depth(gpu: &Gpu, maps: &ShadowMaps) -> Result<Vec<f32>, GpuFailure> {
+    let size = maps.depth_texture().size();
+    let bytes = read_texture(gpu, maps.depth_texture(), UVec2::new(size.width, size.height), size_of::<f32>() as u32)?;
+    Ok(bytemuck::pod_collect_to_vec(&bytes))
+}
+
+/// Bytes of a texture's first layer, rows packed.
+pub(super) fn read_texture(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    size: UVec2,
+    texel_bytes: u32,
+) -> Result<Vec<u8>, GpuFailure> {
+    // Copy, with rows padded as the API wants them.
+    let row = size.x * texel_bytes;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded) * u64::from(size.y),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+        },
+        wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+    );
+    gpu.queue().submit([encoder.finish()]);
+    // Drop the padding.
+    let bytes = map(gpu, &buffer)?;
+    Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+}
+
+/// The bytes of a buffer that can be mapped.
+pub(super) fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuFailure> {
+    buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+    gpu.wait()?;
+    let bytes = buffer.get_mapped_range(..).map_err(GpuFailure::device)?.to_vec();
+    buffer.unmap();
+    Ok(bytes)
+}

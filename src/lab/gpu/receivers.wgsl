@@ -1,0 +1,19 @@
+// Receivers: visibility of the light alone, with the face's normal on the side that is looked at.
+fn visibility(position: vec3f, normal: vec3f) -> f32 {
+    let to_viewer = camera.eye.xyz - position * camera.eye.w;
+    let facing = select(normal, -normal, dot(to_viewer, normal) < 0.0);
+    return antumbra_visibility(position, facing, dot(camera.view_depth, vec4f(position, 1.0)));
+}
+
+@fragment
+fn receive(surface: Solid) -> @location(0) f32 {
+    return visibility(surface.position, surface.normal);
+}
+
+@fragment
+fn receive_cut(surface: Cut) -> @location(0) f32 {
+    if is_hole(surface.uv) {
+        discard;
+    }
+    return visibility(surface.position, surface.normal);
+}
