@@ -1,5 +1,6 @@
 //! What the command lines of the examples share.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
@@ -73,4 +74,64 @@ pub fn encode_png(pixels: &[u8], width: u32, height: u32, colour: ExtendedColorT
         .write_image(pixels, width, height, colour)
         .map_err(|error| format!("cannot encode a picture of {width} x {height} pixels: {error}"))?;
     Ok(bytes)
+}
+
+/// Checks that a folder can be made and written to, and leaves no trace when it was not there.
+///
+/// # Errors
+/// One line that names the path and what is legal.
+pub fn writable_folder(path: &Path) -> Result<(), String> {
+    let problem = |error: &dyn std::fmt::Display| {
+        format!("cannot write to {} ({error}); legal: a folder, or a path where one can be made", path.display())
+    };
+    if path.exists() && !path.is_dir() {
+        return Err(problem(&"it is a file"));
+    }
+    // The nearest folder that exists has to let a file be made in it.
+    let existing = path.ancestors().find(|folder| folder.is_dir()).filter(|folder| !folder.as_os_str().is_empty());
+    tempfile::NamedTempFile::new_in(existing.unwrap_or_else(|| Path::new("."))).map_err(|error| problem(&error))?;
+    Ok(())
+}
+
+/// The time now, seconds since 1970 as a date and time in UTC.
+#[must_use]
+pub fn now() -> String {
+    let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let (days, rest) = (seconds / 86_400, seconds % 86_400);
+    let [year, month, day] = civil(days);
+    format!("{year:04}-{month:02}-{day:02} {:02}:{:02} UTC", rest / 3600, rest / 60 % 60)
+}
+
+/// Year, month and day of a number of days since 1970-01-01 (Gregorian; H. Hinnant, *chrono-compatible low-level date
+/// algorithms*, `civil_from_days`).
+fn civil(days: u64) -> [u64; 3] {
+    let shifted = days + 719_468;
+    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    [year_of_era + era * 400 + u64::from(month <= 2), month, day]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates() {
+        assert_eq!(civil(0), [1970, 1, 1]);
+        assert_eq!(civil(11_016), [2000, 2, 29]);
+        assert_eq!(civil(20_778), [2026, 11, 21]);
+    }
+
+    #[test]
+    fn problems_name_what_is_legal() {
+        assert!(technique("nsm").unwrap_err().contains("ssm, fsm"));
+        for bad in ["0", "16385", "-1", "x", "", "1e3", "NaN"] {
+            assert!(map_size(bad).unwrap_err().contains("1 to 16384"), "{bad}");
+        }
+        assert_eq!(map_size(" 512").unwrap(), 512);
+    }
 }

@@ -2,6 +2,7 @@
 pub mod bvh;
 pub mod case;
 pub mod cli;
+pub mod comparison;
 pub mod cpu;
 pub mod experiment;
 pub mod files;
@@ -15,6 +16,7 @@ pub mod scene;
 pub mod shapes;
 pub mod sparse_city;
 pub mod subject;
+pub mod tour;
 pub mod treeline;
 pub mod truth;
 pub mod viewpoints;

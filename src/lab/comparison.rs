@@ -1,0 +1,182 @@
+//! The main job: techniques × map sizes over scenes and cases, against the truth.
+
+use std::fmt::Write as _;
+
+use image::ExtendedColorType;
+
+use super::case::{BUILT_IN_SCENES, Case, SceneSource};
+use super::cli::encode_png;
+use super::experiment::{Backend, RunError, Shot, Studio, stage_names};
+use super::metrics::{Scores, heat_map, mask_from_bytes};
+use super::report::{Picture, Row, SceneSection};
+use super::sparse_city::sparse_city;
+use super::subject::{Setting, Subject, case_of};
+use super::tour;
+use super::treeline::treeline;
+use super::truth::Truth;
+use super::viewpoints::{sparse_city_viewpoints, treeline_viewpoints};
+use crate::remix::Remix;
+
+/// A scene and the cases that are photographed in it.
+#[derive(Debug)]
+pub struct Assignment {
+    /// Name of the scene in reports.
+    pub scene: String,
+    /// The scene.
+    pub subject: Subject,
+    /// What is photographed.
+    pub cases: Vec<Case>,
+}
+
+impl Assignment {
+    /// A built-in scene with its own viewpoints, or a file with viewpoints around it.
+    ///
+    /// # Errors
+    /// One line that names the scene and what is legal.
+    pub fn of_scene(name: &str) -> Result<Self, String> {
+        let (subject, viewpoints) = match name {
+            "treeline" => (Subject::new(treeline()), treeline_viewpoints()),
+            "sparse-city" => (Subject::new(sparse_city()), sparse_city_viewpoints()),
+            file => {
+                let path = std::path::Path::new(file);
+                if !path.exists() {
+                    let built_in = BUILT_IN_SCENES.join(", ");
+                    return Err(format!("scene is \"{file}\"; legal: {built_in}, or a .glb or .gltf file that exists"));
+                }
+                let subject = Subject::load_file(path).map_err(|error| error.to_string())?;
+                let viewpoints = tour::around(&subject.model.name, &subject.bounds);
+                (subject, viewpoints)
+            }
+        };
+        let scene = subject.model.name.clone();
+        let cases = viewpoints.iter().map(|viewpoint| case_of(viewpoint, &scene)).collect();
+        Ok(Self { scene, subject, cases })
+    }
+
+    /// The scene of a case file, with that case alone.
+    ///
+    /// # Errors
+    /// One line that names the field and what is legal.
+    pub fn of_case(path: &std::path::Path) -> Result<Self, String> {
+        let case = Case::load(path).map_err(|error| error.to_string())?;
+        let source: SceneSource = case.scene_source().map_err(|error| error.to_string())?;
+        let subject = Subject::load(&source).map_err(|error| error.to_string())?;
+        Ok(Self { scene: subject.model.name.clone(), subject, cases: vec![case] })
+    }
+}
+
+/// What every case is photographed with.
+#[derive(Clone, Debug)]
+pub struct Programme {
+    /// Techniques by name.
+    pub techniques: Vec<(String, Remix)>,
+    /// Sides of maps, texels.
+    pub sizes: Vec<u32>,
+    /// How often each pass is drawn for its median time.
+    pub repetitions: u32,
+}
+
+/// Photographs one case with every technique and size; `on_run` is called after each run.
+///
+/// A run that fails is a row too, with its error; nothing is dropped.
+///
+/// # Errors
+/// The backend cannot hold the scene, or a picture cannot be encoded.
+pub fn photograph(
+    backend: &mut Backend,
+    assignment: &Assignment,
+    case: &Case,
+    truth: &Truth,
+    programme: &Programme,
+    on_run: &mut dyn FnMut(&Row),
+) -> Result<SceneSection, String> {
+    let (backend_name, adapter) = (backend.name().to_owned(), backend.adapter());
+    let setting = Setting::of(case);
+    let mut studio = Studio::new(backend, &assignment.subject, setting).map_err(|error| error.to_string())?;
+    let mut section = SceneSection {
+        scene: assignment.scene.clone(),
+        case: case.name.clone(),
+        description: describe(assignment, case, truth),
+        truth_png: png_of(&truth.area, case)?,
+        ..SceneSection::default()
+    };
+    for (name, remix) in &programme.techniques {
+        for &size in &programme.sizes {
+            let [split, warp, encoding] = stage_names(remix);
+            let mut row = Row {
+                scene: assignment.scene.clone(),
+                case: case.name.clone(),
+                technique: name.clone(),
+                split,
+                warp,
+                encoding,
+                size,
+                backend: backend_name.clone(),
+                adapter: adapter.clone(),
+                ..Row::default()
+            };
+            match run(&mut studio, remix, size, programme.repetitions, truth) {
+                Ok((shot, scores)) => {
+                    shot.fill(&mut row, &scores);
+                    section.pictures.push(picture(&shot, &scores, truth, case, name, size)?);
+                }
+                Err(error) => row.left_out = vec![error.to_string()],
+            }
+            on_run(&row);
+            section.rows.push(row);
+        }
+    }
+    Ok(section)
+}
+
+fn run(studio: &mut Studio, remix: &Remix, size: u32, repetitions: u32, truth: &Truth) -> Result<(Shot, Scores), RunError> {
+    let shot = studio.shoot(remix, size, repetitions)?;
+    let scores = shot.scores(truth)?;
+    Ok((shot, scores))
+}
+
+fn picture(shot: &Shot, scores: &Scores, truth: &Truth, case: &Case, technique: &str, size: u32) -> Result<Picture, String> {
+    let [width, height] = case.viewport;
+    let heat = heat_map(&mask_from_bytes(&shot.mask), truth).map_err(|error| error.to_string())?;
+    let mut caption = format!(
+        "{:.2} % wrong, mae {:.4} (floor {:.4})",
+        100.0 * scores.wrong_center,
+        scores.mae,
+        scores.floor_mae
+    );
+    if shot.frame.views.is_empty() {
+        let _ = write!(caption, "; no map");
+    }
+    Ok(Picture {
+        technique: technique.to_owned(),
+        size,
+        png: encode_png(&shot.mask, width, height, ExtendedColorType::L8)?,
+        heat_png: encode_png(&heat, width, height, ExtendedColorType::Rgb8)?,
+        caption,
+    })
+}
+
+/// One sentence about a case.
+fn describe(assignment: &Assignment, case: &Case, truth: &Truth) -> String {
+    let camera = &case.camera;
+    let [width, height] = case.viewport;
+    let shadowed = truth.centre.iter().zip(&truth.valid).filter(|(lit, valid)| **valid && **lit < 1.0).count();
+    format!(
+        "{} triangles in {} objects; {width} × {height} pixels, vertical field of view {:.0}°, depths {} to {}; \
+         {:.0} % of the {} valid pixels in shadow.",
+        assignment.subject.model.triangles.len(),
+        assignment.subject.objects.len(),
+        camera.fov_y_deg,
+        camera.near,
+        camera.far,
+        100.0 * shadowed as f64 / truth.valid_count().max(1) as f64,
+        truth.valid_count(),
+    )
+}
+
+/// A picture of the area truth; sky is white, as in masks.
+fn png_of(area: &[f32], case: &Case) -> Result<Vec<u8>, String> {
+    let [width, height] = case.viewport;
+    let bytes: Vec<u8> = area.iter().map(|lit| (lit * f32::from(u8::MAX)).round() as u8).collect();
+    encode_png(&bytes, width, height, ExtendedColorType::L8)
+}
