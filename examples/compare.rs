@@ -84,7 +84,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         commit: commit(),
         adapter: backend.adapter(),
         started: cli::now(),
-        heat_legend: "Red: light where there is none. Blue: shadow where there is none. Dim picture: the truth.".to_owned(),
+        heat_legend: "Red: light where there is none. Blue: shadow where there is none. Dim picture: the truth."
+            .to_owned(),
         ..Report::default()
     };
     println!("Renderer: {} ({})", backend.name(), backend.adapter());
@@ -99,7 +100,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
             let rows = bar(u64::from(case.viewport[1]), &format!("{}: tracing the truth", case.name));
             let (truth, _) = cache.get(case, &assignment.subject.model, &|| rows.inc(1));
             rows.finish_and_clear();
-            let runs = bar((programme.techniques.len() * programme.sizes.len()) as u64, &format!("{}: drawing", case.name));
+            let runs =
+                bar((programme.techniques.len() * programme.sizes.len()) as u64, &format!("{}: drawing", case.name));
             let section = photograph(&mut backend, assignment, case, &truth, &programme, &mut |row| {
                 runs.inc(1);
                 runs.suspend(|| print_row(row));
@@ -112,7 +114,11 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     report.duration = start.elapsed();
     write_report(&arguments.out, &report).map_err(|error| error.to_string())?;
     let folder = arguments.out.display();
-    println!("{folder}/{INDEX_FILE} and {folder}/{RESULTS_FILE}: {} runs in {:.0?}", report.rows().count(), report.duration);
+    println!(
+        "{folder}/{INDEX_FILE} and {folder}/{RESULTS_FILE}: {} runs in {:.0?}",
+        report.rows().count(),
+        report.duration
+    );
     Ok(())
 }
 
@@ -136,7 +142,8 @@ fn assignments(arguments: &Arguments) -> Result<Vec<Assignment>, String> {
         (true, true) => &built_in[..],
         _ => &arguments.scene[..],
     };
-    let mut assignments: Vec<Assignment> = scenes.iter().map(|scene| Assignment::of_scene(scene)).collect::<Result<_, _>>()?;
+    let mut assignments: Vec<Assignment> =
+        scenes.iter().map(|scene| Assignment::of_scene(scene)).collect::<Result<_, _>>()?;
     for path in &arguments.case {
         assignments.push(Assignment::of_case(path)?);
     }
@@ -174,7 +181,8 @@ fn print_row(row: &antumbra::lab::report::Row) {
 
 /// A progress bar that shows on terminals only.
 fn bar(length: u64, message: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::new(length).with_style(style).with_message(message.to_owned());
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
@@ -189,7 +197,8 @@ fn command_line() -> String {
 
 /// The commit that was built, where git can tell.
 fn commit() -> String {
-    let output = Command::new("git").args(["describe", "--always", "--dirty"]).current_dir(env!("CARGO_MANIFEST_DIR")).output();
+    let output =
+        Command::new("git").args(["describe", "--always", "--dirty"]).current_dir(env!("CARGO_MANIFEST_DIR")).output();
     match output {
         Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
         _ => "unknown".to_owned(),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use antumbra::lab::case::Case;
-use antumbra::lab::cli::{BackendName, fail, map_size, technique, encode_png};
+use antumbra::lab::cli::{BackendName, encode_png, fail, map_size, technique};
 use antumbra::lab::experiment::{Backend, Shot, Studio, stage_names};
 use antumbra::lab::files::write_whole;
 use antumbra::lab::subject::{Setting, Subject};

@@ -8,7 +8,7 @@ use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, WgslKey};
 use crate::light::Light;
-use crate::report::Part;
+use crate::report::{Part, Why};
 use crate::technique::{FitInput, ShadowTechnique};
 
 /// How the light's coordinates are laid out on a map.
@@ -83,7 +83,7 @@ impl ShadowTechnique for Remix {
             Warp::Uniform => FocusBody::of_scene(&input.scene, travel, input.origin),
             Warp::Focused => FocusBody::of_view(&input.camera, &input.scene, travel, input.origin),
         };
-        let body = match body {
+        let mut body = match body {
             Ok(body) => body,
             Err(reason) => {
                 frame.leave_out(reason.part, reason.why);
@@ -97,7 +97,18 @@ impl ShadowTechnique for Remix {
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
         let fitter = Fitter { input: &input, travel, texels, bias: self.bias };
         let window = match (self.stabilise, self.warp) {
-            (Stabilise::Off, _) => fitter.tight(&body, &mut frame),
+            (Stabilise::Off, Warp::Uniform) => fitter.tight(&body, &mut frame),
+            (Stabilise::Off, Warp::Focused) => {
+                let window = fitter.tight(&body, &mut frame);
+                match fitter.not_worth_focusing(&window) {
+                    None => window,
+                    Some((whole, share)) => {
+                        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
+                        body = whole;
+                        fitter.tight(&body, &mut frame)
+                    }
+                }
+            }
             (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(&body, &mut frame),
             (Stabilise::SnapTexels, Warp::Focused) => fitter.snapped(&body, &mut frame),
         };

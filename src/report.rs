@@ -58,6 +58,12 @@ pub enum Why {
         /// The least extent that positions near the body can express, world units.
         widened_to: f64,
     },
+    /// What is in view is nearly the whole scene: a map of the scene, which does not move with the camera and can be kept
+    /// while the scene is still, has texels that are hardly larger.
+    SceneIsInView {
+        /// Area of the focused window over that of the scene's, 0.9 to 1.
+        share: f64,
+    },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
 }
@@ -98,6 +104,9 @@ impl fmt::Display for Why {
             Self::BeyondVisibleDepth { far } => write!(f, "not needed beyond the visible depth {far:.4}"),
             Self::LitWithoutLookup => write!(f, "outside the shadow of the casters' bounds: lit without a lookup"),
             Self::Degenerate { widened_to } => write!(f, "no extent across the light: widened to {widened_to:.3e}"),
+            Self::SceneIsInView { share } => {
+                write!(f, "focusing: the view covers {:.0} % of the scene, whose map can be kept", 100.0 * share)
+            }
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }
     }

@@ -79,7 +79,13 @@ fn files_import_lower_levels_only() {
                 continue;
             }
             imports += 1;
-            assert!(level(&other) < level(&own), "{}: level {} imports {other}, level {}", path.display(), level(&own), level(&other));
+            assert!(
+                level(&other) < level(&own),
+                "{}: level {} imports {other}, level {}",
+                path.display(),
+                level(&own),
+                level(&other)
+            );
         }
     }
     assert!(imports > 30, "the test reads imports: {imports}");
@@ -105,8 +111,14 @@ fn matrices_are_named_to_from() {
         for (number, line) in code(&path).lines().enumerate() {
             for kind in [": Mat4", ": DMat4", ": &Mat4", ": &DMat4"] {
                 let Some(before) = line.split(kind).next().filter(|before| before.len() < line.len()) else { continue };
-                let name: String =
-                    before.chars().rev().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>().chars().rev().collect();
+                let name: String = before
+                    .chars()
+                    .rev()
+                    .take_while(|c| c.is_alphanumeric() || *c == '_')
+                    .collect::<String>()
+                    .chars()
+                    .rev()
+                    .collect();
                 assert!(
                     name.contains("_from_") || name == "to_from" || name == "ndc",
                     "{}:{}: matrix `{name}` is not named to_from",

@@ -11,8 +11,14 @@ use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
 use crate::light_space::LightSpace;
 use crate::math::space::{Clip, Map, Render};
 use crate::report::{Part, Why};
+use crate::scene::Aabb;
 use crate::technique::FitInput;
 use crate::warp::uniform::Window;
+
+/// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera for
+/// next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of the
+/// error). At 0.9 the still map costs at most 5 % of a texel's side, and can be kept as long as the scene is still.
+const WORTH_FOCUSING: f64 = 0.9;
 
 /// What a body is fitted with.
 pub(crate) struct Fitter<'a> {
@@ -55,6 +61,21 @@ impl Fitter<'_> {
             frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: 2.0 * margin });
         }
         window.grown(margin)
+    }
+
+    /// The whole scene's body, where focusing on `window` would shrink texels by too little to be worth a map that has to
+    /// be drawn anew whenever the camera moves.
+    pub(crate) fn not_worth_focusing(&self, window: &Window) -> Option<(FocusBody, f64)> {
+        // Most windows are far smaller than the scene's bounds as the light sees them: no need to fit the scene.
+        let scene = &self.input.scene;
+        if scene.casters == scene.receivers && window.area() <= WORTH_FOCUSING * lit_area(&scene.receivers, self.travel)
+        {
+            return None;
+        }
+        let whole = FocusBody::of_scene(scene, self.travel, self.input.origin).ok()?;
+        let still = Window::least_area(LightSpace::fixed(self.travel), &whole.vertices);
+        let share = window.area() / still.area();
+        (share > WORTH_FOCUSING).then_some((whole, share))
     }
 
     /// The window of the whole scene, which does not move with the camera.
@@ -130,6 +151,12 @@ impl Fitter<'_> {
         let side = f64::from(self.input.map.side);
         BiasInput { light, texel, depth_range: depth.far - depth.near, clip_from_render, reach, side }
     }
+}
+
+/// Area of a box as the light sees it: no window around it is smaller.
+fn lit_area(bounds: &Aabb, travel: DVec3) -> f64 {
+    let size = bounds.max - bounds.min;
+    travel.abs().dot(DVec3::new(size.y * size.z, size.x * size.z, size.x * size.y))
 }
 
 /// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.

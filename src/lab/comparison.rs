@@ -129,21 +129,30 @@ pub fn photograph(
     Ok(section)
 }
 
-fn run(studio: &mut Studio, remix: &Remix, size: u32, repetitions: u32, truth: &Truth) -> Result<(Shot, Scores), RunError> {
+fn run(
+    studio: &mut Studio,
+    remix: &Remix,
+    size: u32,
+    repetitions: u32,
+    truth: &Truth,
+) -> Result<(Shot, Scores), RunError> {
     let shot = studio.shoot(remix, size, repetitions)?;
     let scores = shot.scores(truth)?;
     Ok((shot, scores))
 }
 
-fn picture(shot: &Shot, scores: &Scores, truth: &Truth, case: &Case, technique: &str, size: u32) -> Result<Picture, String> {
+fn picture(
+    shot: &Shot,
+    scores: &Scores,
+    truth: &Truth,
+    case: &Case,
+    technique: &str,
+    size: u32,
+) -> Result<Picture, String> {
     let [width, height] = case.viewport;
     let heat = heat_map(&mask_from_bytes(&shot.mask), truth).map_err(|error| error.to_string())?;
-    let mut caption = format!(
-        "{:.2} % wrong, mae {:.4} (floor {:.4})",
-        100.0 * scores.wrong_center,
-        scores.mae,
-        scores.floor_mae
-    );
+    let mut caption =
+        format!("{:.2} % wrong, mae {:.4} (floor {:.4})", 100.0 * scores.wrong_center, scores.mae, scores.floor_mae);
     if shot.frame.views.is_empty() {
         let _ = write!(caption, "; no map");
     }

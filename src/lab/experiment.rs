@@ -147,7 +147,8 @@ impl<'a> Studio<'a> {
     pub fn new(backend: &'a mut Backend, subject: &'a Subject, setting: Setting) -> Result<Self, RunError> {
         let scene = match backend {
             Backend::Gpu(gpu, _) => Prepared::Gpu(
-                GpuScene::upload(gpu, &subject.model, setting.origin).map_err(|error| RunError::Render(error.to_string()))?,
+                GpuScene::upload(gpu, &subject.model, setting.origin)
+                    .map_err(|error| RunError::Render(error.to_string()))?,
             ),
             Backend::Cpu => Prepared::Cpu(cpu::Visible::draw(&subject.model, &setting.camera, setting.origin)),
         };

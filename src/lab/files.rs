@@ -9,7 +9,10 @@ use std::path::Path;
 /// One line that names the path and what is legal.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), String> {
     let problem = |error: &dyn std::fmt::Display| {
-        format!("cannot write {} ({error}); legal: a file in a folder that exists and may be written to", path.display())
+        format!(
+            "cannot write {} ({error}); legal: a file in a folder that exists and may be written to",
+            path.display()
+        )
     };
     if path.is_dir() {
         return Err(problem(&"it is a folder"));

@@ -44,6 +44,11 @@ impl Window {
         self.high - self.low
     }
 
+    /// Width times height.
+    pub(crate) fn area(&self) -> f64 {
+        self.size().element_product()
+    }
+
     /// Grown by `margin` on every side.
     pub(crate) fn grown(self, margin: f64) -> Self {
         Self { low: self.low - margin, high: self.high + margin, ..self }
