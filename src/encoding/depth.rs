@@ -75,9 +75,9 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
     let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal)) * weight;
     let step = fall.x.abs() + fall.y.abs();
     let cosine = -depth_from_render.xyz().dot(normal) * texel_v.w;
-    let held = cosine.max(grazing);
-    let along_normal = reach * step * (1.0 - cosine.max(0.0) / held) + manual;
-    let depth_per_fall = texel_u.w / held;
+    let held = cosine.abs().max(grazing);
+    let along_normal = reach * step * (1.0 - cosine.abs() / held) + manual;
+    let depth_per_fall = if cosine >= 0.0 { texel_u.w } else { -texel_u.w } / held;
     let at = (position + normal * along_normal).extend(1.0);
     Lookup {
         uv: Vec2::new(Vec4::from_array(view.u_from_render).dot(at), Vec4::from_array(view.v_from_render).dot(at)),
