@@ -131,7 +131,8 @@ impl<'s> Bvh<'s> {
 
     /// Narrows the ray to the hierarchy's f32 frame; `None` when it cannot meet the scene.
     fn prepare(&self, ray: &Ray) -> Option<(NodeRay, RayFrame)> {
-        if self.corners.is_empty() || !(ray.t_min < ray.t_max) || !ray.origin.is_finite() {
+        let has_range = ray.t_min < ray.t_max;
+        if self.corners.is_empty() || !has_range || !ray.origin.is_finite() {
             return None;
         }
         let length = ray.direction.length();
@@ -149,7 +150,8 @@ impl<'s> Bvh<'s> {
         if start > nearest + self.radius {
             return None;
         }
-        let narrow = |v: DVec3| v.as_vec3a();
+        // `obvhs` 0.4 takes -0 for negative in one place and for positive in another; adding 0 makes it +0.
+        let narrow = |v: DVec3| v.as_vec3a() + Vec3A::ZERO;
         let node_origin = narrow((origin + unit * start) / self.radius);
         let frame = RayFrame::new(origin, ray.direction, start, length / self.radius);
         let end = if ray.t_max.is_finite() { frame.node_t(ray.t_max) } else { f32::INFINITY };

@@ -22,6 +22,13 @@
 //! through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that darkens along the same
 //! direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "places in a picture are below 2^28, and colours are rounded on purpose"
+)]
+
 use super::truth::{JOINS_BELOW, JOINS_RIGHT, Truth};
 
 /// How near to an edge pixel, in pixels along both axes, a wrong pixel counts as an edge's: an edge displaced by up to
@@ -331,3 +338,6 @@ fn edge_displacement(mask: &[f32], truth: &Truth) -> Option<f64> {
     let sum: f64 = truth_edges.iter().map(distance).sum();
     (!truth_edges.is_empty()).then(|| sum / truth_edges.len() as f64)
 }
+
+#[cfg(test)]
+mod tests;

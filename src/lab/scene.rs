@@ -75,8 +75,8 @@ impl SceneModel {
     pub fn hash_content(&self, hasher: &mut blake3::Hasher) {
         let mut count = |count: usize| _ = hasher.update(&(count as u64).to_le_bytes());
         // Lengths first, so that no two scenes give one stream of bytes.
-        [self.positions.len(), self.uvs.len(), self.triangles.len()].map(&mut count);
-        [self.triangle_cutout.len(), self.cutouts.len()].map(&mut count);
+        [self.positions.len(), self.uvs.len(), self.triangles.len()].into_iter().for_each(&mut count);
+        [self.triangle_cutout.len(), self.cutouts.len()].into_iter().for_each(&mut count);
         hasher.update(bytemuck::cast_slice(&self.positions));
         hasher.update(bytemuck::cast_slice(&self.uvs));
         hasher.update(bytemuck::cast_slice(&self.triangles));
