@@ -4,7 +4,8 @@
     clippy::cast_precision_loss,
     clippy::cast_sign_loss,
     clippy::float_cmp,
-    reason = "pixels and vertices of test pictures are small numbers, and 0 and 1 are exact"
+    clippy::many_single_char_names,
+    reason = "pixels and vertices of test pictures are small numbers, 0 and 1 are exact, and formulas keep their papers' letters"
 )]
 
 use std::f64::consts::TAU;

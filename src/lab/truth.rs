@@ -281,7 +281,7 @@ impl Tally {
     }
 }
 
-/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: SplitMix64 over pixel and cell.
+/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: the `SplitMix64` mix over pixel and cell.
 fn jitter(x: u32, y: u32, side: u32, cell: u32) -> [f64; 2] {
     let seed = (u64::from(x) << 40) ^ (u64::from(y) << 16) ^ u64::from(side * side + cell);
     let mut bits = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -295,7 +295,7 @@ fn jitter(x: u32, y: u32, side: u32, cell: u32) -> [f64; 2] {
 /// Marks which neighbours lie on one surface.
 fn join_neighbours(pixels: &[Pixel], width: usize) -> Vec<u8> {
     let join = |index: usize| {
-        let right = (index + 1) % width != 0 && lie_on_one_surface(&pixels[index], &pixels[index + 1]);
+        let right = !(index + 1).is_multiple_of(width) && lie_on_one_surface(&pixels[index], &pixels[index + 1]);
         let below = pixels.get(index + width).is_some_and(|below| lie_on_one_surface(&pixels[index], below));
         (u8::from(right) * JOINS_RIGHT) | (u8::from(below) * JOINS_BELOW)
     };

@@ -57,8 +57,11 @@ pub(super) fn split_container(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), 
     Ok((json, (kind == BINARY_CHUNK).then_some(binary)))
 }
 
+/// A chunk's kind and data, and the bytes after it.
+type Chunk<'c> = (&'c [u8], &'c [u8], &'c [u8]);
+
 /// Splits kind and data of the first chunk from the rest.
-fn split_chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), Problem> {
+fn split_chunk(bytes: &[u8]) -> Result<Chunk<'_>, Problem> {
     let truncated = || Problem("truncated: a chunk ends before its length; expected the whole chunk".into());
     let length = read_u32(bytes, 0).ok_or_else(truncated)? as usize;
     let data = bytes.get(CHUNK_HEADER_BYTES..).ok_or_else(truncated)?;

@@ -87,16 +87,16 @@ fn problem(content: &[u8]) -> String {
 
 #[test]
 fn indices_of_every_width_and_none_give_the_same_triangles() {
-    let list = [0_u32, 1, 2, 2, 1, 3];
     let node = json!({"mesh": 0});
-    let bytes8 = list.map(|i| i as u8);
-    let bytes16: Vec<u8> = list.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect();
-    let bytes32: Vec<u8> = list.iter().flat_map(|&i| i.to_le_bytes()).collect();
+    let bytes8 = [0, 1, 2, 2, 1, 3];
+
+    let bytes16: Vec<u8> = bytes8.iter().flat_map(|&i| u16::from(i).to_le_bytes()).collect();
+    let bytes32: Vec<u8> = bytes8.iter().flat_map(|&i| u32::from(i).to_le_bytes()).collect();
     for indices in [(U8, &bytes8[..]), (U16, &bytes16), (U32, &bytes32)] {
         let scene = parse(&square(4, Some(indices), &node), None).unwrap();
         assert_eq!(scene.triangles, [[0, 1, 2], [2, 1, 3]]);
         assert_eq!(scene.positions[3], DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!(scene.objects, [0..2]);
+        assert_eq!(scene.objects.as_slice(), std::slice::from_ref(&(0..2)));
         assert!(scene.triangle_cutout.is_empty() && scene.uvs.is_empty());
     }
     let without = parse(&square(4, None, &node), None).unwrap();
@@ -139,7 +139,7 @@ fn nested_nodes_transform_and_mirrored_ones_keep_their_front() {
 }
 
 /// A card with a 2×1 alpha image: left half empty, right half full.
-fn card(material: Value, with_uvs: bool) -> Vec<u8> {
+fn card(material: &Value, with_uvs: bool) -> Vec<u8> {
     let mut png = Vec::new();
     let pixels = image::RgbaImage::from_raw(2, 1, vec![9, 9, 9, 0, 9, 9, 9, 255]).unwrap();
     pixels.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
@@ -162,7 +162,7 @@ fn a_mask_card_has_holes_where_its_alpha_says() {
         "alphaMode": "MASK", "alphaCutoff": 0.25,
         "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]},
     });
-    let scene = parse(&card(material, true), None).unwrap();
+    let scene = parse(&card(&material, true), None).unwrap();
     assert_eq!(scene.triangle_cutout, [0, 0]);
     let mask = &scene.cutouts[0];
     assert_eq!((mask.width, mask.height, &mask.alpha[..], mask.cutoff), (2, 1, &[0, 255][..], 0.5));
@@ -176,14 +176,14 @@ fn a_mask_card_has_holes_where_its_alpha_says() {
 fn a_mask_without_image_is_decided_by_its_factor() {
     let with_alpha = |alpha: f32| {
         let factor = json!({"baseColorFactor": [1, 1, 1, alpha]});
-        card(json!({"alphaMode": "MASK", "pbrMetallicRoughness": factor}), false)
+        card(&json!({"alphaMode": "MASK", "pbrMetallicRoughness": factor}), false)
     };
     assert!(parse(&with_alpha(0.5), None).unwrap().cutouts.is_empty());
     assert!(problem(&with_alpha(0.49)).contains("no triangles"));
     let texture = json!({"baseColorTexture": {"index": 0}});
-    let blended = parse(&card(json!({"alphaMode": "BLEND", "pbrMetallicRoughness": texture}), true), None);
+    let blended = parse(&card(&json!({"alphaMode": "BLEND", "pbrMetallicRoughness": texture}), true), None);
     assert!(blended.unwrap().cutouts.is_empty());
-    let no_uvs = card(json!({"alphaMode": "MASK", "pbrMetallicRoughness": texture}), false);
+    let no_uvs = card(&json!({"alphaMode": "MASK", "pbrMetallicRoughness": texture}), false);
     assert!(problem(&no_uvs).contains("no TEXCOORD_0"));
 }
 
@@ -204,6 +204,13 @@ fn what_a_file_does_not_hold_is_an_error() {
     // A node that is its own grandchild.
     let cycle = json!({"scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"children": [0]}]});
     assert!(problem(&File::default().close(cycle)).contains("reached twice"));
+    // What the validator of `gltf` 1.4 panics at: positions that are not there, images of no stated type.
+    let content = File::default().close(one_mesh(&json!({"attributes": {"POSITION": 0}}), &node));
+    assert!(problem(&content).contains("accessor 0 is missing"));
+    let mut file = File::default();
+    file.view(&[0; 4]);
+    let content = file.close(json!({"images": [{"bufferView": 0, "uri": "a.png"}]}));
+    assert!(problem(&content).contains("image 0 has no source"));
     // An extension without which the file cannot be read.
     let mut members = one_mesh(&json!({"attributes": {"POSITION": 0}}), &node);
     members["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
@@ -270,7 +277,7 @@ proptest! {
     #[test]
     fn damage_never_panics(places in prop::collection::vec((0..4000_usize, any::<u8>()), 1..4)) {
         let texture = json!({"baseColorTexture": {"index": 0}});
-        let mut content = card(json!({"alphaMode": "MASK", "pbrMetallicRoughness": texture}), true);
+        let mut content = card(&json!({"alphaMode": "MASK", "pbrMetallicRoughness": texture}), true);
         for (place, byte) in places {
             let length = content.len();
             content[place % length] = byte;

@@ -11,7 +11,7 @@ use crate::lab::case::Case;
 use crate::lab::scene::SceneModel;
 
 /// Grows with every change of what [`Truth::trace`] computes or how it is stored.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Names the cache folder instead of `target/antumbra-truth`.
 pub const CACHE_VARIABLE: &str = "ANTUMBRA_TRUTH_CACHE";
