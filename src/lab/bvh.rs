@@ -108,7 +108,7 @@ impl<'s> Bvh<'s> {
         let mut best: Option<Hit> = None;
         self.nodes.ray_traverse(node_ray, &mut RayHit::none(), |_, leaf| {
             let Some(hit) = self.intersect(&frame, ray, leaf) else { return f32::INFINITY };
-            let better = best.is_none_or(|best| hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle));
+            let better = best.is_none_or(|best| (hit.t, hit.triangle) < (best.t, best.triangle));
             if !better || !self.scene.is_solid(hit.triangle as usize, hit.weights) {
                 return f32::INFINITY;
             }
@@ -131,7 +131,8 @@ impl<'s> Bvh<'s> {
 
     /// Narrows the ray to the hierarchy's f32 frame; `None` when it cannot meet the scene.
     fn prepare(&self, ray: &Ray) -> Option<(NodeRay, RayFrame)> {
-        if self.corners.is_empty() || !(ray.t_min < ray.t_max) || !ray.origin.is_finite() {
+        let has_range = ray.t_min < ray.t_max;
+        if self.corners.is_empty() || !has_range || !ray.origin.is_finite() {
             return None;
         }
         let length = ray.direction.length();
@@ -149,7 +150,8 @@ impl<'s> Bvh<'s> {
         if start > nearest + self.radius {
             return None;
         }
-        let narrow = |v: DVec3| v.as_vec3a();
+        // `obvhs` 0.4 takes -0 for negative in one place and for positive in another; adding 0 makes it +0.
+        let narrow = |v: DVec3| v.as_vec3a() + Vec3A::ZERO;
         let node_origin = narrow((origin + unit * start) / self.radius);
         let frame = RayFrame::new(origin, ray.direction, start, length / self.radius);
         let end = if ray.t_max.is_finite() { frame.node_t(ray.t_max) } else { f32::INFINITY };
@@ -189,12 +191,14 @@ impl RayFrame {
     }
 
     /// Rounds a parameter up into the hierarchy's f32 units, so that no box with a nearer hit is passed over.
+    #[allow(clippy::cast_possible_truncation, reason = "the margin makes up for the rounding")]
     fn node_t(&self, t: f64) -> f32 {
         let exact = t * self.node_per_t - self.node_start;
         exact as f32 + BOX_MARGIN
     }
 
     /// Returns `t` and the corners' weights where the ray's line meets the triangle, edges included.
+    #[allow(clippy::many_single_char_names, reason = "the names of the paper")]
     fn intersect(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
         let [kx, ky, kz] = self.axes;
         let [a, b, c] = corners.map(|corner| {

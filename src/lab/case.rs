@@ -307,3 +307,6 @@ mod array {
         <[f64; 3]>::deserialize(deserializer).map(DVec3::from_array)
     }
 }
+
+#[cfg(test)]
+mod tests;

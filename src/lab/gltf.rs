@@ -59,6 +59,7 @@ fn parse(content: &[u8], folder: Option<&Path>) -> Result<SceneModel, Problem> {
     let (json, blob) = split_container(content)?;
     let root = gltf::json::deserialize::from_slice(json)
         .map_err(|error| Problem(format!("not glTF ({error}); expected glTF 2.0 JSON")))?;
+    check_gaps(&root)?;
     let document =
         gltf::Document::from_json(root).map_err(|error| Problem(format!("invalid glTF 2.0 document: {error}")))?;
     // Read what it refers to.
@@ -69,6 +70,26 @@ fn parse(content: &[u8], folder: Option<&Path>) -> Result<SceneModel, Problem> {
         builder.add_node(&node, world_from_node)?;
     }
     builder.finish()
+}
+
+/// Checks what the validator of `gltf` 1.4 leaves to chance: with these it, or the document's iterators, would panic.
+fn check_gaps(root: &gltf::json::Root) -> Result<(), Problem> {
+    // A primitive's positions must exist before the validator looks at their bounds.
+    let position = gltf::json::validation::Checked::Valid(Semantic::Positions);
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut accessors = primitives.filter_map(|primitive| primitive.attributes.get(&position));
+    if let Some(bad) = accessors.find(|accessor| accessor.value() >= root.accessors.len()) {
+        return Err(Problem(format!("accessor {} is missing; legal is 0..{}", bad.value(), root.accessors.len())));
+    }
+    // An image must have a source.
+    let has_source = |image: &gltf::json::Image| match image.buffer_view {
+        Some(_) => image.mime_type.is_some(),
+        None => image.uri.is_some(),
+    };
+    match root.images.iter().position(|image| !has_source(image)) {
+        Some(bad) => Err(Problem(format!("image {bad} has no source; legal are a uri, or a bufferView with mimeType"))),
+        None => Ok(()),
+    }
 }
 
 /// Lists the nodes that are drawn, each with its transform; a node with two parents or in a cycle is an error.
@@ -166,27 +187,15 @@ impl Builder<'_> {
         if mask == Mask::Hole {
             return Ok(());
         }
-        // Read positions into world space.
-        let accessor = primitive.get(&Semantic::Positions).ok_or_else(|| Problem("has no POSITION".into()))?;
-        let local = self.buffers.read_points(&accessor, Dimensions::Vec3)?;
-        let base = u32::try_from(self.scene.positions.len()).ok();
-        let base = base.filter(|base| base.checked_add(u32::try_from(local.len()).unwrap_or(u32::MAX)).is_some());
-        let base = base.ok_or_else(|| Problem("too many vertices; a scene may hold 2^32 - 1".into()))?;
-        for [x, y, z] in &local {
-            let point = world_from_node.transform_point3(DVec3::new(*x, *y, *z));
-            if !point.is_finite() {
-                return Err(Problem(format!("position {point} in world space is not finite")));
-            }
-            self.scene.positions.push(point);
-        }
-        self.add_uvs(primitive, mask, local.len())?;
+        let (base, count) = self.add_positions(primitive, world_from_node)?;
+        self.add_uvs(primitive, mask, count as usize)?;
         // Read indices and turn strips and fans into lists.
         let indices = match primitive.indices() {
             Some(accessor) => self.buffers.read_indices(&accessor)?,
-            None => (0..local.len() as u32).collect(),
+            None => (0..count).collect(),
         };
-        if let Some(index) = indices.iter().find(|&&index| index as usize >= local.len()) {
-            return Err(Problem(format!("index {index} is out of range; legal is 0..{}", local.len())));
+        if let Some(index) = indices.iter().find(|&&index| index >= count) {
+            return Err(Problem(format!("index {index} is out of range; legal is 0..{count}")));
         }
         // Mirrored nodes turn the winding round; turn it back.
         let mirrored = world_from_node.determinant() < 0.0;
@@ -197,6 +206,29 @@ impl Builder<'_> {
             self.scene.triangle_cutout.push(cutout);
         }
         Ok(())
+    }
+
+    /// Adds a primitive's positions in world space; returns the first one's index and their number.
+    fn add_positions(
+        &mut self,
+        primitive: &gltf::Primitive<'_>,
+        world_from_node: DMat4,
+    ) -> Result<(u32, u32), Problem> {
+        let accessor = primitive.get(&Semantic::Positions).ok_or_else(|| Problem("has no POSITION".into()))?;
+        let local = self.buffers.read_points(&accessor, Dimensions::Vec3)?;
+        let first = self.scene.positions.len();
+        let [Ok(base), Ok(_)] = [first, first + local.len()].map(u32::try_from) else {
+            return Err(Problem("is one too many: more than 2^32 - 1 vertices; legal are fewer".into()));
+        };
+        for &[x, y, z] in &local {
+            let point = world_from_node.transform_point3(DVec3::new(x, y, z));
+            if !point.is_finite() {
+                return Err(Problem(format!("position {point} in world space is not finite")));
+            }
+            self.scene.positions.push(point);
+        }
+        // The sum fits, so the number does.
+        Ok((base, u32::try_from(local.len()).unwrap_or_default()))
     }
 
     /// Adds one texture coordinate per position: the mask's, or zero for solid parts.
@@ -241,7 +273,7 @@ impl Builder<'_> {
         if cutoff <= 0.0 {
             return Ok(Mask::Solid);
         }
-        if !(factor >= cutoff) {
+        if factor < cutoff {
             return Ok(Mask::Hole);
         }
         let Some(info) = base_color.base_color_texture() else { return Ok(Mask::Solid) };
@@ -249,7 +281,7 @@ impl Builder<'_> {
         let image = self.buffers.read_image(&info.texture().source(), self.folder)?;
         let (width, height) = image.dimensions();
         let alpha = image.pixels().map(|pixel| pixel.0[3]).collect();
-        let index = self.scene.cutouts.len() as u32;
+        let index = u32::try_from(self.scene.cutouts.len()).map_err(|_| Problem("is one mask too many".into()))?;
         self.scene.cutouts.push(Cutout { width, height, alpha, cutoff: cutoff / factor });
         Ok(Mask::Cutout(index))
     }
@@ -290,3 +322,6 @@ fn component_size(data_type: DataType) -> usize {
         DataType::U32 | DataType::F32 => 4,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -22,6 +22,14 @@
 //! through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that darkens along the same
 //! direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    clippy::float_cmp,
+    reason = "places in a picture are below 2^28, colours are rounded on purpose, the centre truth is exactly 0 or 1"
+)]
+
 use super::truth::{JOINS_BELOW, JOINS_RIGHT, Truth};
 
 /// How near to an edge pixel, in pixels along both axes, a wrong pixel counts as an edge's: an edge displaced by up to
@@ -260,7 +268,7 @@ fn near_edges(truth: &Truth) -> Vec<bool> {
         }
     };
     for index in 0..width * height {
-        if (index + 1) % width != 0 {
+        if !(index + 1).is_multiple_of(width) {
             compare(index, index + 1);
         }
         if index + width < width * height {
@@ -331,3 +339,6 @@ fn edge_displacement(mask: &[f32], truth: &Truth) -> Option<f64> {
     let sum: f64 = truth_edges.iter().map(distance).sum();
     (!truth_edges.is_empty()).then(|| sum / truth_edges.len() as f64)
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,9 +9,19 @@
 //!   spot or point light the point must also lie inside cone and range.
 //! - A pixel is *valid* when its centre sample is defined.
 //! - Samples of the area that are not defined do not count: the area truth is the mean over the others.
-//! - 16 samples, jittered in a 4×4 grid; where they or the centre disagree, 64 more in an 8×8 grid.
+//! - 16 samples, jittered in a 4×4 grid; where they, the centre and the pixel's corners disagree, 64 more in an 8×8
+//!   grid. Centre and corners only ask for more, they are not part of the mean.
 //!
 //! The shadow distance of a case is a limit of techniques, not of light: truth ignores it.
+
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "pixel counts are far below 2^24 per sample set, and pictures are stored in f32 on purpose"
+)]
+
+mod cache;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -19,6 +29,8 @@ use rayon::prelude::*;
 use super::bvh::{Bvh, Hit, Ray};
 use super::case::{Case, CaseLight};
 use super::scene::SceneModel;
+
+pub use cache::{CACHE_VARIABLE, CacheUse, TruthCache};
 
 /// Side of the grid of samples that every valid pixel gets: 16 in all. Fewer miss thin shadows, more cost time.
 const COARSE_GRID: u32 = 4;
@@ -173,11 +185,21 @@ impl<'c> Tracer<'c> {
         // Average the area; look closer where the samples disagree.
         let mut tally = Tally::default();
         self.add_grid(&mut tally, COARSE_GRID, left, top);
-        if !tally.agrees_with(centre) {
+        if !tally.agrees_with(centre) || self.corners_differ(centre, left, top) {
             self.add_grid(&mut tally, FINE_GRID, left, top);
         }
         let centre = f32::from(u8::from(centre));
         Pixel { valid: true, centre, area: tally.mean().unwrap_or(centre), surface: Some(surface) }
+    }
+
+    /// Tells whether a corner of the pixel is defined and not as the centre: an edge may cut off less than one sample's
+    /// share. The corners themselves do not count towards the mean; they would weigh its rim double.
+    fn corners_differ(&self, centre: bool, left: f64, top: f64) -> bool {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+        corners.iter().any(|(x, y)| match self.sample(left + x, top + y) {
+            Sample::Defined { lit, .. } => lit != centre,
+            Sample::Nothing | Sample::Unlit(_) => false,
+        })
     }
 
     /// Adds the defined samples of a jittered grid over the pixel.
@@ -259,7 +281,7 @@ impl Tally {
     }
 }
 
-/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: SplitMix64 over pixel and cell.
+/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: the `SplitMix64` mix over pixel and cell.
 fn jitter(x: u32, y: u32, side: u32, cell: u32) -> [f64; 2] {
     let seed = (u64::from(x) << 40) ^ (u64::from(y) << 16) ^ u64::from(side * side + cell);
     let mut bits = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -273,9 +295,9 @@ fn jitter(x: u32, y: u32, side: u32, cell: u32) -> [f64; 2] {
 /// Marks which neighbours lie on one surface.
 fn join_neighbours(pixels: &[Pixel], width: usize) -> Vec<u8> {
     let join = |index: usize| {
-        let right = (index + 1) % width != 0 && lie_on_one_surface(&pixels[index], &pixels[index + 1]);
+        let right = !(index + 1).is_multiple_of(width) && lie_on_one_surface(&pixels[index], &pixels[index + 1]);
         let below = pixels.get(index + width).is_some_and(|below| lie_on_one_surface(&pixels[index], below));
-        u8::from(right) * JOINS_RIGHT | u8::from(below) * JOINS_BELOW
+        (u8::from(right) * JOINS_RIGHT) | (u8::from(below) * JOINS_BELOW)
     };
     (0..pixels.len()).map(join).collect()
 }

@@ -57,8 +57,11 @@ pub(super) fn split_container(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), 
     Ok((json, (kind == BINARY_CHUNK).then_some(binary)))
 }
 
+/// A chunk's kind and data, and the bytes after it.
+type Chunk<'c> = (&'c [u8], &'c [u8], &'c [u8]);
+
 /// Splits kind and data of the first chunk from the rest.
-fn split_chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), Problem> {
+fn split_chunk(bytes: &[u8]) -> Result<Chunk<'_>, Problem> {
     let truncated = || Problem("truncated: a chunk ends before its length; expected the whole chunk".into());
     let length = read_u32(bytes, 0).ok_or_else(truncated)? as usize;
     let data = bytes.get(CHUNK_HEADER_BYTES..).ok_or_else(truncated)?;
@@ -232,10 +235,16 @@ fn component(bytes: &[u8], data_type: DataType, normalized: bool) -> f64 {
         DataType::U32 => (f64::from(raw), f64::from(u32::MAX)),
         DataType::U16 => (f64::from(raw), f64::from(u16::MAX)),
         DataType::U8 => (f64::from(raw), f64::from(u8::MAX)),
-        DataType::I16 => (f64::from(raw as u16 as i16), f64::from(i16::MAX)),
-        DataType::I8 => (f64::from(raw as u8 as i8), f64::from(i8::MAX)),
+        DataType::I16 => (signed(raw, 16), f64::from(i16::MAX)),
+        DataType::I8 => (signed(raw, 8), f64::from(i8::MAX)),
     };
     if normalized { (value / scale).max(-1.0) } else { value }
+}
+
+/// Reads the low bits of a number as two's complement.
+fn signed(raw: u32, bits: u32) -> f64 {
+    let unused = u32::BITS - bits;
+    f64::from((raw << unused).cast_signed() >> unused)
 }
 
 /// Reads what a URI names: base64 data, or a file relative to the document.
