@@ -123,7 +123,7 @@ pub const PICTURE: [u32; 2] = [800, 600];
 #[must_use]
 pub fn case_of(viewpoint: &Viewpoint, scene: &str) -> Case {
     Case {
-        name: viewpoint.name.clone(),
+        name: viewpoint.name.strip_prefix(&format!("{scene}-")).unwrap_or(&viewpoint.name).to_owned(),
         scene: scene.to_owned(),
         camera: super::case::CaseCamera {
             eye: viewpoint.eye,
