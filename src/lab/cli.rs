@@ -84,12 +84,12 @@ pub fn writable_folder(path: &Path) -> Result<(), String> {
     let problem = |error: &dyn std::fmt::Display| {
         format!("cannot write to {} ({error}); legal: a folder, or a path where one can be made", path.display())
     };
-    if path.exists() && !path.is_dir() {
-        return Err(problem(&"it is a file"));
+    // The nearest thing on the way that exists has to be a folder that lets a file be made in it.
+    let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or_else(|| Path::new("."));
+    if !existing.is_dir() {
+        return Err(problem(&format!("{} is a file", existing.display())));
     }
-    // The nearest folder that exists has to let a file be made in it.
-    let existing = path.ancestors().find(|folder| folder.is_dir()).filter(|folder| !folder.as_os_str().is_empty());
-    tempfile::NamedTempFile::new_in(existing.unwrap_or_else(|| Path::new("."))).map_err(|error| problem(&error))?;
+    tempfile::NamedTempFile::new_in(existing).map_err(|error| problem(&error))?;
     Ok(())
 }
 

@@ -151,8 +151,11 @@ fn picture(
 ) -> Result<Picture, String> {
     let [width, height] = case.viewport;
     let heat = heat_map(&mask_from_bytes(&shot.mask), truth).map_err(|error| error.to_string())?;
-    let mut caption =
-        format!("{:.2} % wrong, mae {:.4} (floor {:.4})", 100.0 * scores.wrong_center, scores.mae, scores.floor_mae);
+    let mut caption = format!(
+        "away from edges: leak {:.3} %, acne {:.3} %",
+        100.0 * scores.leak_interior,
+        100.0 * scores.false_interior
+    );
     if shot.frame.views.is_empty() {
         let _ = write!(caption, "; no map");
     }
