@@ -4,7 +4,7 @@ use antumbra::{
     Aabb, Camera, FitInput, Light, MapBudget, Object, Remix, Scene, ShadowTechnique, Stabilise, techniques,
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 use std::hint::black_box;
 
 /// Scenes by the work they cause: a body that fills the frustum, one that is cut on all sides, many objects.

@@ -6,7 +6,7 @@
 //! ```
 
 use std::path::PathBuf;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use antumbra::lab::case::Case;
@@ -81,7 +81,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let mut report = Report {
         title: "Shadow techniques compared".to_owned(),
         command: command_line(),
-        commit: commit(),
+        commit: cli::commit(),
         adapter: backend.adapter(),
         started: cli::now(),
         heat_legend: "Red: light where there is none. Blue: shadow where there is none. Dim picture: the truth."
@@ -193,14 +193,4 @@ fn command_line() -> String {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let separator = if arguments.is_empty() { "" } else { " -- " };
     format!("cargo run --release --example compare{separator}{}", arguments.join(" "))
-}
-
-/// The commit that was built, where git can tell.
-fn commit() -> String {
-    let output =
-        Command::new("git").args(["describe", "--always", "--dirty"]).current_dir(env!("CARGO_MANIFEST_DIR")).output();
-    match output {
-        Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
-        _ => "unknown".to_owned(),
-    }
 }

@@ -32,7 +32,8 @@ fn refused(name: &str, files: &[(&str, &str)], arguments: &[&str], words: &[&str
     for word in words {
         assert!(said.contains(word), "{name} {arguments:?} does not say {word:?}: {said}");
     }
-    let left: Vec<_> = std::fs::read_dir(folder.path()).expect("readable").map(|entry| entry.expect("entry").file_name()).collect();
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path()).expect("readable").map(|entry| entry.expect("entry").file_name()).collect();
     assert_eq!(left.len(), files.len(), "{name} {arguments:?} left {left:?}");
 }
 
@@ -50,12 +51,22 @@ fn case(field: &str, value: &str) -> String {
         ("shadow_distance", "50"),
         ("scene", "\"treeline\""),
     ];
-    let get = |name: &str| if name == field { value.to_owned() } else { fields.iter().find(|(n, _)| *n == name).unwrap().1.to_owned() };
+    let get = |name: &str| {
+        if name == field { value.to_owned() } else { fields.iter().find(|(n, _)| *n == name).unwrap().1.to_owned() }
+    };
     format!(
         r#"{{"name": "test", "scene": {}, "camera": {{"eye": {}, "target": {}, "up": {}, "fov_y_deg": {}, "near": {}, "far": {}}},
             "light": {{"kind": "directional", "travel": {}}}, "viewport": {}, "shadow_distance": {}}}"#,
-        get("scene"), get("eye"), get("target"), get("up"), get("fov_y_deg"), get("near"), get("far"), get("travel"),
-        get("viewport"), get("shadow_distance"),
+        get("scene"),
+        get("eye"),
+        get("target"),
+        get("up"),
+        get("fov_y_deg"),
+        get("near"),
+        get("far"),
+        get("travel"),
+        get("viewport"),
+        get("shadow_distance"),
     )
 }
 
@@ -87,7 +98,12 @@ fn mask_refuses_bad_input() {
     refused("mask", &[("case.json", &good)], &mask_with("--technique", "nsm"), &["technique", "nsm", "ssm, fsm"]);
     refused("mask", &[("case.json", &good)], &mask_with("--size", "0"), &["size", "\"0\"", "1 to 16384"]);
     refused("mask", &[("case.json", &good)], &mask_with("--size", "16385"), &["size", "16385", "1 to 16384"]);
-    refused("mask", &[("case.json", &good)], &mask_with("--out", "no/such/folder/mask.png"), &["no/such/folder", "legal"]);
+    refused(
+        "mask",
+        &[("case.json", &good)],
+        &mask_with("--out", "no/such/folder/mask.png"),
+        &["no/such/folder", "legal"],
+    );
     refused("mask", &[("case.json", &good)], &mask_with("--out", "."), &["legal"]);
 }
 
@@ -120,14 +136,18 @@ fn mask_writes_a_mask_and_its_times() {
     assert!(pixels.pixels().any(|pixel| pixel.0[0] == 0));
     let timing: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("mask.json")).expect("readable")).expect("JSON");
-    for key in ["fit_ns", "casters_ms", "filter_ms", "receivers_ms", "total_ms", "bytes", "adapter", "backend", "left_out"] {
+    for key in
+        ["fit_ns", "casters_ms", "filter_ms", "receivers_ms", "total_ms", "bytes", "adapter", "backend", "left_out"]
+    {
         assert!(!timing[key].is_null(), "{key} is missing");
     }
 }
 
 #[test]
 fn help_teaches() {
-    for (name, words) in [("mask", ["--case", "shadow_distance", "exit code 2"]), ("compare", ["--quick", "floor", "index.html"])] {
+    for (name, words) in
+        [("mask", ["--case", "shadow_distance", "exit code 2"]), ("compare", ["--quick", "floor", "index.html"])]
+    {
         let output = run(name, Path::new("."), &["--help"]);
         assert!(output.status.success());
         // Help is wrapped to the terminal.

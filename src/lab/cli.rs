@@ -1,7 +1,7 @@
 //! What the command lines of the examples share.
 
 use std::path::Path;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use clap::ValueEnum;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -113,6 +113,16 @@ fn civil(days: u64) -> [u64; 3] {
     let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
     let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
     [year_of_era + era * 400 + u64::from(month <= 2), month, day]
+}
+
+/// The commit this was built from, where git can tell.
+#[must_use]
+pub fn commit() -> String {
+    let mut git = Command::new("git");
+    match git.args(["describe", "--always", "--dirty"]).current_dir(env!("CARGO_MANIFEST_DIR")).output() {
+        Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+        _ => "unknown".to_owned(),
+    }
 }
 
 #[cfg(test)]

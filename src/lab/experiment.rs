@@ -5,7 +5,7 @@ use std::fmt;
 use std::time::Instant;
 
 use super::cpu;
-use super::gpu::{Gpu, GpuScene, RenderOptions, Renderer};
+use super::gpu::{Gpu, GpuScene, Race, RenderOptions, Renderer};
 use super::metrics::{MaskError, Scores, mask_from_bytes};
 use super::report::Row;
 use super::subject::{Setting, Subject};
@@ -185,6 +185,31 @@ impl<'a> Studio<'a> {
             }
             (Backend::Cpu, Prepared::Gpu(_)) => Err(RunError::Render("the scene was prepared for a GPU".to_owned())),
         }
+    }
+}
+
+impl Studio<'_> {
+    /// The library's passes beside passes written by hand, in turns; `None` on the software renderer.
+    ///
+    /// # Errors
+    /// As [`shoot`](Self::shoot).
+    pub fn race(
+        &mut self,
+        technique: &dyn ShadowTechnique,
+        side: u32,
+        repetitions: u32,
+    ) -> Result<Option<Race>, RunError> {
+        let input = self.setting.input(self.subject, side);
+        let frame = technique.fit(&input).map_err(RunError::Fit)?;
+        let (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) = (&mut *self.backend, &self.scene) else {
+            return Ok(None);
+        };
+        let failed = |error: &dyn fmt::Display| RunError::Render(error.to_string());
+        let renderer = renderers.entry(frame.wgsl).or_insert_with(|| Renderer::new(gpu, frame.wgsl));
+        let descriptor = ShadowMapsDescriptor { label: Some("antumbra lab"), key: frame.wgsl, map: input.map };
+        let maps = ShadowMaps::new(gpu.device(), &descriptor).map_err(|error| failed(&error))?;
+        let race = renderer.race(gpu, scene, &self.setting.camera, &frame, &maps, repetitions);
+        race.map(Some).map_err(|error| failed(&error))
     }
 }
 
