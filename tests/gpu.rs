@@ -55,8 +55,18 @@ impl Stage {
     }
 }
 
-/// What a ray through the middle of a pixel says: visibility of the light, or `None` at the sky.
-fn truth(model: &SceneModel, camera: &Camera, pixel: DVec2) -> Option<bool> {
+/// What a ray through the middle of a pixel says.
+#[derive(Clone, Copy, PartialEq)]
+enum Truth {
+    /// Sky, or a surface that light reaches.
+    Lit,
+    /// A surface that faces the light, and something between them.
+    Shadowed,
+    /// A surface that faces away: lighting is zero there, and a filter's fringe cannot be seen.
+    Away,
+}
+
+fn truth(model: &SceneModel, camera: &Camera, pixel: DVec2) -> Truth {
     let ndc = pixel / camera.viewport.as_dvec2() * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
     let (from, along) = match camera.projection {
         Projection::Perspective { left, right, down, up, .. } => {
@@ -70,16 +80,23 @@ fn truth(model: &SceneModel, camera: &Camera, pixel: DVec2) -> Option<bool> {
     };
     let from = camera.world_from_view.transform_point3(from);
     let along = camera.world_from_view.transform_vector3(along);
-    let (distance, _) = support::trace(model, from, along, 1e-9)?;
+    let Some((distance, triangle)) = support::trace(model, from, along, 1e-9) else { return Truth::Lit };
     let at = from + along * distance;
-    Some(support::trace(model, at, -support::travel(), 1e-6).is_none())
+    let [a, b, c] = model.triangles[triangle].map(|vertex| model.positions[vertex as usize]);
+    let normal = (b - a).cross(c - a);
+    // Seen from one side and lit from the other.
+    if normal.dot(along) * normal.dot(support::travel()) <= 0.0 {
+        return Truth::Away;
+    }
+    let lit = support::trace(model, at, -support::travel(), 1e-6).is_none();
+    if lit { Truth::Lit } else { Truth::Shadowed }
 }
 
 /// Share of wrong pixels among those whose neighbourhood (two pixels) agrees: no edge of light or of the scene is near.
 fn wrong_in_the_interior(model: &SceneModel, camera: &Camera, mask: &[u8]) -> (usize, usize) {
     let UVec2 { x: width, y: height } = camera.viewport;
     let row = |y: u32| (0..width).map(move |x| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-    let lit: Vec<bool> = (0..height).flat_map(row).map(|pixel| truth(model, camera, pixel).unwrap_or(true)).collect();
+    let lit: Vec<Truth> = (0..height).flat_map(row).map(|pixel| truth(model, camera, pixel)).collect();
     let (width, height) = (width as usize, height as usize);
     let (mut wrong, mut counted) = (0, 0);
     for y in 2..height - 2 {
@@ -87,9 +104,9 @@ fn wrong_in_the_interior(model: &SceneModel, camera: &Camera, mask: &[u8]) -> (u
             let expected = lit[y * width + x];
             let agree =
                 (y - 2..=y + 2).all(|y| lit[y * width + x - 2..=y * width + x + 2].iter().all(|l| *l == expected));
-            if agree {
+            if agree && expected != Truth::Away {
                 counted += 1;
-                wrong += usize::from((mask[y * width + x] >= 128) != expected);
+                wrong += usize::from((mask[y * width + x] >= 128) != (expected == Truth::Lit));
             }
         }
     }
@@ -109,7 +126,8 @@ fn shadows_are_where_rays_say() {
             image::save_buffer(path, &mask, SIZE.x, SIZE.y, image::ColorType::L8).unwrap();
         }
         let (wrong, counted) = wrong_in_the_interior(&stage.model, &camera, &mask);
-        assert!(counted > 60_000, "{counted}");
+        assert!(counted > 55_000, "{counted}");
+        eprintln!("{filter:?}: {wrong} of {counted}");
         assert!(wrong * 2_000 < counted, "{filter:?}: {wrong} of {counted}");
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn camera(size: UVec2) -> Camera {
 
 /// The direction in which light travels in these tests.
 pub(crate) fn travel() -> DVec3 {
-    DVec3::new(-0.5, -1.0, -0.35).normalize()
+    DVec3::new(0.6, -1.0, 0.35).normalize()
 }
 
 fn quad(model: &mut SceneModel, corners: [DVec3; 4]) {
