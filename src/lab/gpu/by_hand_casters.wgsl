@@ -7,12 +7,12 @@ struct Cut {
 }
 
 @vertex
-fn cast(@location(0) position: vec3f) -> @builtin(position) vec4f {
+fn throw_solid(@location(0) position: vec3f) -> @builtin(position) vec4f {
     return light * vec4f(position, 1.0);
 }
 
 @vertex
-fn cast_cut(@location(0) position: vec3f, @location(2) uv: vec2f) -> Cut {
+fn throw_cut(@location(0) position: vec3f, @location(2) uv: vec2f) -> Cut {
     return Cut(light * vec4f(position, 1.0), uv);
 }
 

@@ -7,12 +7,12 @@ struct Cut {
 }
 
 @vertex
-fn cast(@location(0) position: vec3f) -> @builtin(position) vec4f {
+fn throw_solid(@location(0) position: vec3f) -> @builtin(position) vec4f {
     return antumbra_caster(clip_from_render, position);
 }
 
 @vertex
-fn cast_cut(@location(0) position: vec3f, @location(2) uv: vec2f) -> Cut {
+fn throw_cut(@location(0) position: vec3f, @location(2) uv: vec2f) -> Cut {
     return Cut(antumbra_caster(clip_from_render, position), uv);
 }
 

@@ -40,7 +40,7 @@ pub(super) fn casters(gpu: &Gpu, caster_layout: &wgpu::BindGroupLayout) -> Pair 
     caster_pair(gpu, "casters", &text, caster_layout)
 }
 
-/// A caster pair of any text with the entry points `cast`, `cast_cut` and `cut`.
+/// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`.
 pub(super) fn caster_pair(gpu: &Gpu, label: &'static str, text: &str, layout: &wgpu::BindGroupLayout) -> Pair {
     pair(
         gpu,
@@ -48,8 +48,8 @@ pub(super) fn caster_pair(gpu: &Gpu, label: &'static str, text: &str, layout: &w
             label,
             text,
             groups: [Some(layout), None],
-            solid: ("cast", None),
-            cut: ("cast_cut", "cut"),
+            solid: ("throw_solid", None),
+            cut: ("throw_cut", "cut"),
             depth: gpu::depth_stencil_state(),
             target: None,
         },
