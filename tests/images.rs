@@ -1,0 +1,151 @@
+//! Pictures against ray-traced truth, and the two renderers against each other, on the shared cases (where `ANTUMBRA_SCENES` names
+//! the folder of scenes beside them) and on built-in viewpoints.
+
+use std::path::{Path, PathBuf};
+
+use antumbra::lab::case::Case;
+use antumbra::lab::comparison::Assignment;
+use antumbra::lab::experiment::{Backend, BackendChoice, Shot, Studio};
+use antumbra::lab::metrics::Scores;
+use antumbra::lab::subject::Setting;
+use antumbra::lab::truth::TruthCache;
+use antumbra::{Encoding, Pcf, Remix, techniques};
+
+/// The shared case files; none, said aloud, where the variable is not set.
+fn shared_cases() -> Vec<PathBuf> {
+    let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") else {
+        println!("shared cases: skipped, ANTUMBRA_SCENES is not set");
+        return Vec::new();
+    };
+    let folder = Path::new(&scenes).join("../cases");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.expect("a readable entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .collect();
+    files.sort();
+    assert!(!files.is_empty(), "{} holds no case", folder.display());
+    files
+}
+
+/// Runs `check` over the shared cases and one built-in viewpoint a scene.
+fn over_cases(mut check: impl FnMut(&Assignment, &Case)) {
+    for name in ["treeline", "sparse-city"] {
+        let mut assignment = Assignment::of_scene(name).expect("built in");
+        // The overviews: where a focused map of 2048 texels can be expected to suffice.
+        assignment.cases.retain(|case| case.name == "overview");
+        let case = assignment.cases[0].clone();
+        check(&assignment, &case);
+    }
+    for path in shared_cases() {
+        let assignment = Assignment::of_case(&path).expect("a legal case");
+        let case = assignment.cases[0].clone();
+        check(&assignment, &case);
+    }
+}
+
+fn shoot(backend: &mut Backend, assignment: &Assignment, case: &Case, remix: &Remix, size: u32) -> Shot {
+    let mut studio = Studio::new(backend, &assignment.subject, Setting::of(case)).expect("a scene that fits");
+    studio.shoot(remix, size, 1).expect("a picture")
+}
+
+fn scores(backend: &mut Backend, assignment: &Assignment, case: &Case, remix: &Remix, size: u32) -> Scores {
+    let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
+    shoot(backend, assignment, case, remix, size).scores(&truth).expect("a mask of the right size")
+}
+
+/// Most interior false shadow (acne) and interior leak of a focused map of 2048 texels, shares of the valid pixels.
+const MOST_ACNE: f64 = 1e-4;
+const MOST_LEAK: f64 = 1e-3;
+
+/// No acne and no leaks without any tuning; a focused map is never worse than the standard one; both get better with size.
+#[test]
+fn focused_maps_meet_their_bounds() {
+    let mut backend = Backend::Cpu;
+    println!("| case | size | floor mae | ssm wrong % | fsm wrong % | fsm leak | fsm acne |");
+    let mut broken = Vec::new();
+    over_cases(|assignment, case| {
+        let mut last = f64::INFINITY;
+        for size in [512, 1024, 2048] {
+            let ssm = scores(&mut backend, assignment, case, &techniques::ssm(), size);
+            let fsm = scores(&mut backend, assignment, case, &techniques::fsm(), size);
+            let (leak, acne) = (fsm.leak_interior, fsm.false_interior);
+            println!(
+                "| {} | {size} | {:.4} | {:.3} | {:.3} | {leak:.1e} | {acne:.1e} |",
+                case.name,
+                fsm.floor_mae,
+                100.0 * ssm.wrong_center,
+                100.0 * fsm.wrong_center
+            );
+            let mut require = |holds: bool, what: &str| {
+                if !holds {
+                    broken.push(format!("{} at {size}: {what}", case.name));
+                }
+            };
+            require(fsm.wrong_center <= ssm.wrong_center, "fsm is worse than ssm");
+            require(fsm.wrong_center < last, "fsm did not get better with size");
+            let shared = case.folder != PathBuf::new();
+            require(!shared || size < 2048 || acne <= MOST_ACNE, "acne");
+            require(!shared || size < 2048 || leak <= MOST_LEAK, "leak");
+            last = fsm.wrong_center;
+        }
+    });
+    assert!(broken.is_empty(), "{broken:#?}");
+}
+
+/// Wider filters blur, and do nothing else: no acne either, and the same shadows.
+#[test]
+fn wide_filters_raise_no_acne() {
+    let mut backend = Backend::Cpu;
+    over_cases(|assignment, case| {
+        let plain = self::scores(&mut backend, assignment, case, &techniques::fsm(), 2048);
+        for filter in Pcf::ALL {
+            let remix = Remix { encoding: Encoding::Depth(filter), ..techniques::fsm() };
+            let scores = self::scores(&mut backend, assignment, case, &remix, 2048);
+            println!(
+                "{} {}: {:.3} % wrong, mae {:.4}, acne {:.1e}, leak {:.1e}",
+                case.name,
+                filter.name(),
+                100.0 * scores.wrong_center,
+                scores.mae,
+                scores.false_interior,
+                scores.leak_interior
+            );
+            // Three times the acne of the bilinear filter and one bound: what coarse texels show of detail below their size
+            // depends on the filter, self-shadowing would show as percents.
+            let most = 3.0 * plain.false_interior + MOST_ACNE;
+            assert!(scores.false_interior <= most, "{} {}: acne {}", case.name, filter.name(), scores.false_interior);
+        }
+    });
+}
+
+/// Most pixels of a mask in which the renderers may differ visibly: silhouettes where they disagree about coverage.
+const MOST_DIFFERENT: f64 = 0.005;
+/// A visible difference, of 255.
+const VISIBLE: u8 = 8;
+
+#[test]
+fn gpu_and_software_masks_agree() {
+    let mut gpu = match Backend::open(BackendChoice::Gpu) {
+        Ok((gpu, _)) => gpu,
+        Err(why) if std::env::var("ANTUMBRA_NO_GPU").is_ok_and(|value| value == "1") => {
+            println!("skipped, ANTUMBRA_NO_GPU=1: {why}");
+            return;
+        }
+        Err(why) => panic!("{why}"),
+    };
+    println!("GPU test: gpu_and_software_masks_agree on {}", gpu.adapter());
+    over_cases(|assignment, case| {
+        for (name, technique) in techniques::NAMED {
+            for size in [512, 2048] {
+                let ours = shoot(&mut gpu, assignment, case, &technique(), size).mask;
+                let twin = shoot(&mut Backend::Cpu, assignment, case, &technique(), size).mask;
+                assert_eq!(ours.len(), twin.len());
+                let different = ours.iter().zip(&twin).filter(|(a, b)| a.abs_diff(**b) > VISIBLE).count();
+                let share = different as f64 / ours.len() as f64;
+                println!("{} {name} {size}: {:.4} % of the pixels differ visibly", case.name, 100.0 * share);
+                assert!(share <= MOST_DIFFERENT, "{} {name} {size}: {share}", case.name);
+            }
+        }
+    });
+}
