@@ -221,11 +221,9 @@ impl Projection {
         }
         ordered("camera.projection.left", left, "camera.projection.right", right, "left < right")?;
         ordered("camera.projection.down", down, "camera.projection.up", up, "down < up")?;
-        if perspective {
-            if !(near > 0.0) {
-                let field = "camera.projection.near";
-                return Err(FitError::OutOfRange { field, value: near, legal: "greater than 0 (perspective)" });
-            }
+        if perspective && !(near > 0.0) {
+            let field = "camera.projection.near";
+            return Err(FitError::OutOfRange { field, value: near, legal: "greater than 0 (perspective)" });
         }
         ordered("camera.projection.near", near, "camera.projection.far", far, "near < far")
     }

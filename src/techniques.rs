@@ -18,8 +18,11 @@ pub fn fsm() -> Remix {
     Remix { warp: Warp::Focused, ..Remix::default() }
 }
 
+/// Makes a remix with its default options.
+pub type Maker = fn() -> Remix;
+
 /// Every named technique, in the order in which reports list them.
-pub const NAMED: &[(&str, fn() -> Remix)] = &[("ssm", ssm), ("fsm", fsm)];
+pub const NAMED: &[(&str, Maker)] = &[("ssm", ssm), ("fsm", fsm)];
 
 /// The technique of that name, if there is one.
 #[must_use]

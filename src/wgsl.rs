@@ -11,6 +11,8 @@
 //! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked at,
 //! `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
 
+use core::fmt::Write as _;
+
 use arrayvec::ArrayVec;
 
 use crate::frame::{Pcf, WgslKey};
@@ -73,7 +75,8 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
         text.push_str(fragment);
         text.push('\n');
     }
-    text.push_str(&format!(
+    let _ = write!(
+        text,
         "@group({group}) @binding({uniforms}) var<uniform> antumbra_uniforms: AntumbraUniforms;\n\
          @group({group}) @binding({map}) var antumbra_map: texture_depth_2d;\n\
          @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n\
@@ -81,7 +84,7 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
          fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {{\n\
          \x20   return antumbra_visible(antumbra_uniforms.view, antumbra_map, antumbra_compare, position, normal);\n\
          }}\n"
-    ));
+    );
     text
 }
 

@@ -7,7 +7,7 @@
 //! light would grow as the tangent.
 //!
 //! # References
-//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|n_x| + |n_y|) / |n_z|, exact; δ = (r + ½) s (|n_x| + |n_y|), bounded.
+//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|), bounded.
 
 use glam::{DVec2, DVec3, DVec4};
 

@@ -1,7 +1,7 @@
 //! Maps that do not crawl: a window of constant size on a grid that is fixed to the world.
 //!
 //! # References
-//! - Valient, *Stable rendering of cascaded shadow maps*, ShaderX6, 2008: a sphere around the frustum, snapped to texels.
+//! - Valient, *Stable rendering of cascaded shadow maps*, `ShaderX6`, 2008: a sphere around the frustum, snapped to texels.
 
 use glam::{DVec2, DVec3};
 

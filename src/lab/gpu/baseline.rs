@@ -73,15 +73,15 @@ impl Renderer {
     ) -> Result<[f64; 4], GpuFailure> {
         let mut times = [0.0; 4];
         for second in [false, true] {
-            if second != library_first {
-                times[0] = stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?;
-                times[2] = stopwatch.time(|encoder, stamps| {
-                    shot.receiver_pass(encoder, stamps, self.receivers(), maps.bind_group());
-                })?;
-            } else {
+            if second == library_first {
                 times[1] = stopwatch.time(|encoder, stamps| by_hand.caster_passes(encoder, stamps, shot))?;
                 times[3] = stopwatch.time(|encoder, stamps| {
                     shot.receiver_pass(encoder, stamps, &by_hand.receivers, &by_hand.receiver_group);
+                })?;
+            } else {
+                times[0] = stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?;
+                times[2] = stopwatch.time(|encoder, stamps| {
+                    shot.receiver_pass(encoder, stamps, self.receivers(), maps.bind_group());
                 })?;
             }
         }
