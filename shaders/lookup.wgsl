@@ -15,9 +15,9 @@ fn antumbra_lookup(view: AntumbraView, position: vec3f, normal: vec3f, reach: f3
     let step = abs(fall.x) + abs(fall.y);
     // Along the light where that is short, along the normal for the rest.
     let cosine = -dot(view.depth_from_render.xyz, normal) * view.texel_v.w;
-    let held = max(cosine, view.bias.y);
-    let along_normal = reach * step * (1.0 - max(cosine, 0.0) / held) + view.bias.w;
-    let depth_per_fall = view.texel_u.w / held;
+    let inverse = 1.0 / max(cosine, view.bias.y);
+    let along_normal = reach * step * (1.0 - max(cosine, 0.0) * inverse) + view.bias.w;
+    let depth_per_fall = view.texel_u.w * inverse;
     let at = vec4f(position + normal * along_normal, 1.0);
     var look: AntumbraLookup;
     look.uv = vec2f(dot(view.u_from_render, at), dot(view.v_from_render, at));
