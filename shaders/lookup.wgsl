@@ -15,10 +15,10 @@ fn antumbra_lookup(view: AntumbraView, position: vec3f, normal: vec3f, reach: f3
     let step = abs(fall.x) + abs(fall.y);
     // Along the light where that is short, along the normal for the rest.
     let cosine = -dot(view.depth_from_render.xyz, normal) * view.texel_v.w;
-    let held = max(abs(cosine), view.bias.y);
-    let along_normal = reach * step * (1.0 - abs(cosine) / held) + view.bias.w;
+    let inverse = 1.0 / max(abs(cosine), view.bias.y);
+    let along_normal = reach * step * (1.0 - abs(cosine) * inverse) + view.bias.w;
     // The side that is turned away is pushed off the light instead: a sheet shades its own back.
-    let depth_per_fall = select(-view.texel_u.w, view.texel_u.w, cosine >= 0.0) / held;
+    let depth_per_fall = select(-view.texel_u.w, view.texel_u.w, cosine >= 0.0) * inverse;
     let at = vec4f(position + normal * along_normal, 1.0);
     var look: AntumbraLookup;
     look.uv = vec2f(dot(view.u_from_render, at), dot(view.v_from_render, at));

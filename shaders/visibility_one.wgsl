@@ -2,8 +2,8 @@
 // normal: unit geometric normal, on the side that is looked at; zero turns the automatic bias off.
 fn antumbra_visible(view: AntumbraView, map: texture_depth_2d, compare: sampler_comparison, position: vec3f, normal: vec3f) -> f32 {
     let look = antumbra_lookup(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH);
-    if any(look.uv < view.rect.xy) || any(look.uv > view.rect.zw) {
-        return 1.0;
+    if all((look.uv >= view.rect.xy) & (look.uv <= view.rect.zw)) {
+        return antumbra_filter(map, compare, look);
     }
-    return antumbra_filter(map, compare, look);
+    return 1.0;
 }

@@ -230,7 +230,8 @@ impl ViewUniforms {
         depth_from_render: [0.0; 4],
         texel_u: [0.0; 4],
         texel_v: [0.0; 4],
-        bias: [0.0; 4],
+        // A grazing cosine of 0 would divide by zero.
+        bias: [0.0, 1.0, 0.0, 0.0],
         rect: [2.0, 2.0, -1.0, -1.0],
     };
 }

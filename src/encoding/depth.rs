@@ -75,9 +75,9 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
     let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal)) * weight;
     let step = fall.x.abs() + fall.y.abs();
     let cosine = -depth_from_render.xyz().dot(normal) * texel_v.w;
-    let held = cosine.abs().max(grazing);
-    let along_normal = reach * step * (1.0 - cosine.abs() / held) + manual;
-    let depth_per_fall = if cosine >= 0.0 { texel_u.w } else { -texel_u.w } / held;
+    let inverse = 1.0 / cosine.abs().max(grazing);
+    let along_normal = reach * step * (1.0 - cosine.abs() * inverse) + manual;
+    let depth_per_fall = if cosine >= 0.0 { texel_u.w } else { -texel_u.w } * inverse;
     let at = (position + normal * along_normal).extend(1.0);
     Lookup {
         uv: Vec2::new(Vec4::from_array(view.u_from_render).dot(at), Vec4::from_array(view.v_from_render).dot(at)),
@@ -138,10 +138,10 @@ pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: V
 pub fn antumbra_visible(filter: Pcf, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
     let look = antumbra_lookup(view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
     let rect = Vec4::from_array(view.rect);
-    if look.uv.cmplt(rect.xy()).any() || look.uv.cmpgt(rect.zw()).any() {
-        return 1.0;
+    if look.uv.cmpge(rect.xy()).all() && look.uv.cmple(rect.zw()).all() {
+        return antumbra_filter(filter, map, &look);
     }
-    antumbra_filter(filter, map, &look)
+    1.0
 }
 
 /// Place of a point between texel centres.

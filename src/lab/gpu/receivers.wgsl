@@ -1,8 +1,6 @@
-// Receivers: visibility of the light alone, with the face's normal on the side that is looked at.
+// Receivers: visibility of the light alone.
 fn visibility(position: vec3f, normal: vec3f) -> f32 {
-    let to_viewer = camera.eye.xyz - position * camera.eye.w;
-    let facing = select(normal, -normal, dot(to_viewer, normal) < 0.0);
-    return antumbra_visibility(position, facing, dot(camera.view_depth, vec4f(position, 1.0)));
+    return antumbra_visibility(position, normal, dot(camera.view_depth, vec4f(position, 1.0)));
 }
 
 @fragment

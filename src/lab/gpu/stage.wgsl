@@ -21,6 +21,12 @@ struct Cut {
     @location(2) uv: vec2f,
 }
 
+// The normal of a face, turned to the side that is looked at: the same for all of its vertices.
+fn towards_viewer(position: vec3f, normal: vec3f) -> vec3f {
+    let to_viewer = camera.eye.xyz - position * camera.eye.w;
+    return select(normal, -normal, dot(to_viewer, normal) < 0.0);
+}
+
 @vertex
 fn place_depth(@location(0) position: vec3f) -> @builtin(position) @invariant vec4f {
     return camera.clip_from_render * vec4f(position, 1.0);
@@ -28,12 +34,12 @@ fn place_depth(@location(0) position: vec3f) -> @builtin(position) @invariant ve
 
 @vertex
 fn place(@location(0) position: vec3f, @location(1) normal: vec4f) -> Solid {
-    return Solid(camera.clip_from_render * vec4f(position, 1.0), position, normal.xyz);
+    return Solid(camera.clip_from_render * vec4f(position, 1.0), position, towards_viewer(position, normal.xyz));
 }
 
 @vertex
 fn place_cut(@location(0) position: vec3f, @location(1) normal: vec4f, @location(2) uv: vec2f) -> Cut {
-    return Cut(camera.clip_from_render * vec4f(position, 1.0), position, normal.xyz, uv);
+    return Cut(camera.clip_from_render * vec4f(position, 1.0), position, towards_viewer(position, normal.xyz), uv);
 }
 
 @fragment
