@@ -262,7 +262,8 @@ fn pipelines_accept_the_layouts() {
         let layout =
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
         let entries = maps.bind_entries(7);
-        let _ = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+        let _ =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         for (text, layout) in [(own, maps.bind_group_layout()), (merged, &layout)] {
             make_pipeline(&device, &text, layout, maps.caster_layout());
         }
