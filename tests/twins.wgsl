@@ -1,0 +1,53 @@
+// Every numeric function of the library, over an array of cases. The library's text comes before, the calls that only
+// some keys have come after.
+struct Case {
+    view: AntumbraView,
+    position: vec4f,
+    normal: vec4f,
+    // uv, depth.
+    look: vec4f,
+    // Slope, and the offset of a tap.
+    slope_offset: vec4f,
+    // A row of a box: three x, one y.
+    row: vec4f,
+    weight: vec4f,
+}
+
+struct Outcome {
+    uv: vec2f,
+    depth: f32,
+    visible: f32,
+    slope: vec2f,
+    filtered: f32,
+    visibility: f32,
+    clip: vec4f,
+    tap: f32,
+    row: f32,
+    spare: vec2f,
+}
+
+@group(0) @binding(0) var<storage, read> cases: array<Case>;
+@group(0) @binding(1) var<storage, read_write> outcomes: array<Outcome>;
+
+@compute @workgroup_size(64)
+fn run(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= arrayLength(&cases) {
+        return;
+    }
+    let case_ = cases[id.x];
+    let view = case_.view;
+    let found = antumbra_lookup(view, case_.position.xyz, case_.normal.xyz, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH);
+    let given = AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy);
+    var out: Outcome;
+    out.uv = found.uv;
+    out.depth = found.depth;
+    out.slope = found.slope;
+    out.filtered = antumbra_filter(antumbra_map, antumbra_compare, given);
+    out.visible = antumbra_visible(view, antumbra_map, antumbra_compare, case_.position.xyz, case_.normal.xyz);
+    out.visibility = antumbra_visibility(case_.position.xyz, case_.normal.xyz, 1.0);
+    let matrix = mat4x4f(view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render);
+    out.clip = antumbra_caster(matrix, case_.position.xyz);
+    out.tap = tap(given, case_.slope_offset.zw);
+    out.row = row(given, case_.row.xyz, case_.weight.xyz, case_.row.w);
+    outcomes[id.x] = out;
+}
