@@ -9,9 +9,9 @@ struct AntumbraView {
     // One texel step in u and in v across the light, world units; w: depth per world unit, and its inverse.
     texel_u: vec4f,
     texel_v: vec4f,
-    // Constant bias (depth), cosine of incidence that counts as grazing, weight of the automatic bias, manual normal
-    // offset (world units).
+    // Constant bias (depth), cosine of incidence that counts as grazing, texels that rounding adds to a filter's reach, manual
+    // normal offset (world units).
     bias: vec4f,
-    // The map's rectangle in texture coordinates: min, max.
+    // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,
 }

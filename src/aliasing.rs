@@ -20,8 +20,9 @@ pub(crate) fn footprint(camera: &Camera, vertices: &[DVec3], origin: DVec3, texe
         nearest = nearest.min(depth);
         farthest = farthest.max(depth);
     }
-    let rows = f64::from(camera.viewport.y);
+    let picture = camera.viewport.as_dvec2();
     // A lens that sees nothing wide makes texels that fill any picture: the largest number stands for it.
-    let pixels = |depth: f64| (texel * rows / camera.projection.height_at(depth)).min(f64::from(f32::MAX)) as f32;
+    let largest = f64::from(f32::MAX);
+    let pixels = |depth: f64| (texel * (picture / camera.projection.size_at(depth)).max_element()).min(largest) as f32;
     (Footprint { min: pixels(farthest), max: pixels(nearest) }, [nearest as f32, farthest as f32])
 }

@@ -1,6 +1,6 @@
 //! The camera: where it stands, what it sees, and how to read both out of an engine's matrices.
 
-use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, UVec2};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Mat4, UVec2};
 
 use crate::error::{FitError, coordinate, finite};
 
@@ -139,8 +139,10 @@ impl Camera {
         for value in entries {
             coordinate("camera.world_from_view", value)?;
         }
-        if self.world_from_view.row(3) != DVec4::W {
-            return Err(FitError::NotRigid { field: "camera.world_from_view", deviation: f64::INFINITY });
+        // Inverting an f32 matrix leaves an ulp in the last row, which nothing reads.
+        let deviation = (self.world_from_view.row(3) - DVec4::W).abs().max_element();
+        if deviation > RIGID_TOLERANCE {
+            return Err(FitError::NotRigid { field: "camera.world_from_view", deviation });
         }
         let rotation = DMat3::from_mat4(self.world_from_view);
         let gram = rotation.transpose() * rotation - DMat3::IDENTITY;
@@ -202,10 +204,10 @@ impl Projection {
         }
     }
 
-    /// Height of the picture in world units at an eye depth.
-    pub(crate) fn height_at(&self, depth: f64) -> f64 {
-        let (_, _, down, up, spreads) = self.sides();
-        if spreads { (up - down) * depth } else { up - down }
+    /// Width and height of the picture in world units at an eye depth.
+    pub(crate) fn size_at(&self, depth: f64) -> DVec2 {
+        let (left, right, down, up, spreads) = self.sides();
+        DVec2::new(right - left, up - down) * if spreads { depth } else { 1.0 }
     }
 
     fn validate(&self) -> Result<(), FitError> {
@@ -404,6 +406,19 @@ mod tests {
         let range =
             Camera::from_matrices(DMat4::IDENTITY, reversed, ClipDepth::Unknown).unwrap().projection.depth_range();
         assert!(close(range.0, 1.0, 1e-12) && range.1 >= 100.0);
+    }
+
+    /// `view.inverse()` in f32 leaves 0.99999994 in the last row in one case of six: it was refused.
+    #[test]
+    fn inverses_of_f32_views_are_rigid() {
+        let clip_from_view = perspective_matrix([-1.0, 1.0, -1.0, 1.0], 0.0, 1.0, 0.1, 100.0).as_mat4();
+        for step in 0..10_000_u16 {
+            let angle = f64::from(step);
+            let eye = DVec3::new(angle.sin() * 30.0, 3.0 + (angle * 0.7).sin() * 40.0, (angle * 1.3).cos() * 50.0);
+            let view_from_world = Camera::look_at(eye, DVec3::new(1.0, 2.0, 3.0), DVec3::Y).inverse().as_mat4();
+            let camera = Camera::from_matrices_f32(view_from_world.inverse(), clip_from_view, ClipDepth::ZeroToOne);
+            assert!(camera.is_ok(), "{camera:?}");
+        }
     }
 
     #[test]

@@ -18,19 +18,19 @@ pub(crate) struct FocusBody {
     /// Its vertices, all finite, at least one.
     pub(crate) vertices: ArrayVec<DVec3, MAX_VERTICES>,
     /// What the body does without.
-    pub(crate) left_out: Option<Why>,
+    pub(crate) left_out: ArrayVec<LeftOut, 2>,
 }
 
-/// Bounds are grown by this share of their largest coordinate (as seen from the origin of render space), so that
-/// rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs texels.
+/// Bounds are grown by this share of the largest coordinate that takes part (as seen from the origin of render space), so
+/// that rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs texels.
 const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl FocusBody {
     /// The receivers of the whole scene that the casters' bounds can shadow, whoever looks: view-independent.
     pub(crate) fn of_scene(scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
         nothing_in(scene)?;
-        let receivers = grown(&scene.receivers, origin);
-        Self::shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin)
+        let receivers = grown(&scene.receivers, origin, 0.0);
+        Self::shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)
     }
 
     /// The receivers in view: frustum ∩ receivers' bounds ∩ the shadow of the casters' bounds.
@@ -40,31 +40,41 @@ impl FocusBody {
         let DepthRange { near, far } = visible_depth(camera, scene)?;
         let mut body = Convex::hexahedron(camera.corners(near, far, origin));
         // Of it, what the receivers' bounds hold.
-        for plane in box_planes(&grown(&scene.receivers, origin)) {
+        let reach = (camera.eye() - origin).abs().max_element();
+        for plane in box_planes(&grown(&scene.receivers, origin, reach)) {
             body.clip(plane);
         }
         if body.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NoReceiversInView { near, far } });
         }
-        let mut body = Self::shadowed(body, scene, travel, origin)?;
-        let (_, camera_far) = camera.projection.depth_range();
-        if far < camera_far && body.left_out.is_none() {
-            body.left_out = Some(Why::BeyondVisibleDepth { far });
+        // Of that, what something can shadow.
+        let mut body = Self::shadowed(body, scene, travel, origin, reach)?;
+        if (DepthRange { near, far }) != camera_depth(camera) {
+            let _ = body.left_out.try_push(LeftOut { part: Part::Frustum, why: Why::NotVisible { near, far } });
         }
         Ok(body)
     }
 
     /// Of a body, what the shadow of the casters' bounds reaches.
-    fn shadowed(mut body: Convex, scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
-        let mut cut = false;
-        for plane in shadow_planes(&grown(&scene.casters, origin), travel) {
-            cut |= body.clip(plane);
+    fn shadowed(mut body: Convex, scene: &Scene, travel: DVec3, origin: DVec3, reach: f64) -> Result<Self, LeftOut> {
+        let (casters, receivers) = (&scene.casters, &scene.receivers);
+        let mut left_out = ArrayVec::new();
+        // Receivers among the casters are all in their shadow.
+        let among = casters.min.cmple(receivers.min).all() && casters.max.cmpge(receivers.max).all();
+        if !among {
+            let mut cut = false;
+            for plane in shadow_planes(&grown(casters, origin, reach), travel) {
+                cut |= body.clip(plane);
+            }
+            if cut {
+                left_out.push(LeftOut { part: Part::Receivers(0), why: Why::LitWithoutLookup });
+            }
         }
         let vertices: ArrayVec<DVec3, MAX_VERTICES> = body.points().collect();
         if vertices.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NothingCastsHere });
         }
-        Ok(Self { vertices, left_out: cut.then_some(Why::LitWithoutLookup) })
+        Ok(Self { vertices, left_out })
     }
 }
 
@@ -78,9 +88,15 @@ fn nothing_in(scene: &Scene) -> Result<(), LeftOut> {
     Ok(())
 }
 
+/// The camera's own depth range.
+fn camera_depth(camera: &Camera) -> DepthRange {
+    let (near, far) = camera.projection.depth_range();
+    DepthRange { near, far }
+}
+
 /// The camera's depth range, cut to what the scene says is visible.
 fn visible_depth(camera: &Camera, scene: &Scene) -> Result<DepthRange, LeftOut> {
-    let (near, far) = camera.projection.depth_range();
+    let DepthRange { near, far } = camera_depth(camera);
     let Some(visible) = scene.visible_depth else { return Ok(DepthRange { near, far }) };
     let cut = DepthRange { near: near.max(visible.near), far: far.min(visible.far) };
     if cut.near <= cut.far {
@@ -89,10 +105,10 @@ fn visible_depth(camera: &Camera, scene: &Scene) -> Result<DepthRange, LeftOut> 
     Err(LeftOut { part: Part::Light, why: Why::OutsideVisibleDepth { near: visible.near, far: visible.far } })
 }
 
-/// Bounds in render space, grown by the margin.
-fn grown(bounds: &Aabb, origin: DVec3) -> Aabb {
+/// Bounds in render space, grown by the margin; `reach` is the largest coordinate of whatever they are cut with.
+fn grown(bounds: &Aabb, origin: DVec3, reach: f64) -> Aabb {
     let (min, max) = (bounds.min - origin, bounds.max - origin);
-    let margin = BOUNDS_MARGIN * min.abs().max(max.abs()).max_element();
+    let margin = BOUNDS_MARGIN * min.abs().max(max.abs()).max_element().max(reach);
     Aabb { min: min - margin, max: max + margin }
 }
 

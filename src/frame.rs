@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 
 use crate::report::{LeftOut, Part, Why};
-use crate::scene::Aabb;
+use crate::scene::{Aabb, MapBudget};
 
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
@@ -16,7 +16,7 @@ pub const MAX_LEFT_OUT: usize = 2 * MAX_VIEWS;
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;
 
-/// Which shader text a technique needs. Two bytes; compare it with the key a pipeline was built for.
+/// Which shader text a technique needs. A byte or two; compare it with the key a pipeline was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct WgslKey {
     /// How the map is filtered.
@@ -83,6 +83,8 @@ pub struct ShadowFrame {
     pub uniforms: ShadowUniforms,
     /// The shader text these uniforms are for.
     pub wgsl: WgslKey,
+    /// The texels it was fitted for.
+    pub map: MapBudget,
     /// What was left out, clamped or replaced, and why.
     pub left_out: ArrayVec<LeftOut, MAX_LEFT_OUT>,
     /// The predicted sampling error over all views.
@@ -91,11 +93,12 @@ pub struct ShadowFrame {
 
 impl ShadowFrame {
     /// A frame in which nothing is shadowed yet: everything reads lit.
-    pub(crate) fn lit(wgsl: WgslKey) -> Self {
+    pub(crate) fn lit(wgsl: WgslKey, map: MapBudget) -> Self {
         Self {
             views: ArrayVec::new(),
             uniforms: ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] },
             wgsl,
+            map,
             left_out: ArrayVec::new(),
             predicted: Footprint::NONE,
         }
@@ -214,24 +217,24 @@ pub struct ViewUniforms {
     pub texel_u: [f32; 4],
     /// xyz: one texel step in v across the light, world units. w: world units per depth.
     pub texel_v: [f32; 4],
-    /// x: constant bias, depth units. y: weight of the automatic slope bias (0 or 1). z: weight of the automatic normal
-    /// offset (0 or 1). w: manual normal offset, world units.
+    /// x: constant bias, depth units. y: cosine of incidence below which a surface grazes the light. z: texels that rounding
+    /// adds to the reach of a filter. w: manual normal offset, world units.
     pub bias: [f32; 4],
-    /// The view's rectangle in texture coordinates: u min, v min, u max, v max. Outside is lit.
+    /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
+    /// that lookups beyond the window read lit.
     pub rect: [f32; 4],
 }
 
 impl ViewUniforms {
-    /// A view that reads lit everywhere: its rectangle is empty.
+    /// A view that reads lit everywhere: every receiver is in front of every caster.
     pub const LIT: Self = Self {
         u_from_render: [0.0; 4],
         v_from_render: [0.0; 4],
         w_from_render: [0.0, 0.0, 0.0, 1.0],
-        depth_from_render: [0.0; 4],
+        depth_from_render: [0.0, 0.0, 0.0, -1.0],
         texel_u: [0.0; 4],
         texel_v: [0.0; 4],
-        // A grazing cosine of 0 would divide by zero.
         bias: [0.0, 1.0, 0.0, 0.0],
-        rect: [2.0, 2.0, -1.0, -1.0],
+        rect: [0.0; 4],
     };
 }

@@ -55,7 +55,7 @@
 //! | render space | world − `origin`: what emitted matrices and shader positions are relative to |
 //! | vectors, matrices | column vectors; a matrix is named `to_from` |
 //! | clip space of a map | x, y ∈ [−1, 1], z ∈ [0, 1], 0 nearest to the light |
-//! | texture coordinates | u = x/2 + ½, v = ½ − y/2: row 0 is on top |
+//! | texture coordinates | within a view's viewport u = x/2 + ½, v = ½ − y/2: row 0 is on top |
 //! | depth | linear along the light: `depth_from_render` equals clip z for directional light |
 //! | `travel` | the unit vector along which light travels |
 //! | winding | a triangle that is counter-clockwise seen from the light is counter-clockwise in the map |

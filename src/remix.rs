@@ -8,7 +8,7 @@ use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, WgslKey};
 use crate::light::Light;
-use crate::report::{Part, Why};
+use crate::report::{LeftOut, Why};
 use crate::technique::{FitInput, ShadowTechnique};
 
 /// How the light's coordinates are laid out on a map.
@@ -56,7 +56,8 @@ pub enum Stabilise {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remix {
-    /// Layout of a map. Default: focused, because it costs nothing and never has larger texels.
+    /// Layout of a map. Default: focused, because its texels are never larger in area than the uniform map's by more
+    /// than rounding.
     pub warp: Warp,
     /// What is stored and how it is read. Default: hardware 2×2, one texture sample.
     pub encoding: Encoding,
@@ -77,43 +78,31 @@ impl ShadowTechnique for Remix {
         let input = input.validate()?;
         self.bias.validate()?;
         let travel = directional(&input.light)?;
-        let mut frame = ShadowFrame::lit(self.wgsl_key());
+        let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
         // Find what has to be in the map.
         let body = match self.warp {
             Warp::Uniform => FocusBody::of_scene(&input.scene, travel, input.origin),
             Warp::Focused => FocusBody::of_view(&input.camera, &input.scene, travel, input.origin),
         };
-        let mut body = match body {
+        let body = match body {
             Ok(body) => body,
-            Err(reason) => {
-                frame.leave_out(reason.part, reason.why);
+            Err(LeftOut { part, why }) => {
+                frame.leave_out(part, why);
                 return Ok(frame);
             }
         };
-        if let Some(why) = body.left_out {
-            frame.leave_out(Part::Receivers(0), why);
-        }
+        body.left_out.iter().for_each(|cut| frame.leave_out(cut.part, cut.why));
         // Lay it out.
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
         let fitter = Fitter { input: &input, travel, texels, bias: self.bias };
-        let window = match (self.stabilise, self.warp) {
-            (Stabilise::Off, Warp::Uniform) => fitter.tight(&body, &mut frame),
-            (Stabilise::Off, Warp::Focused) => {
-                let window = fitter.tight(&body, &mut frame);
-                match fitter.not_worth_focusing(&window) {
-                    None => window,
-                    Some((whole, share)) => {
-                        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
-                        body = whole;
-                        fitter.tight(&body, &mut frame)
-                    }
-                }
-            }
-            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(&body, &mut frame),
-            (Stabilise::SnapTexels, Warp::Focused) => fitter.snapped(&body, &mut frame),
+        let layout = match (self.stabilise, self.warp) {
+            (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
+            (Stabilise::Off, Warp::Focused) => fitter.focused(body, &mut frame),
+            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, &mut frame),
+            (Stabilise::SnapTexels, Warp::Focused) => fitter.snapped(body, &mut frame),
         };
         // Draw the conclusions: view and uniforms.
-        fitter.view(&body, &window, &mut frame);
+        fitter.view(&layout, &mut frame);
         Ok(frame)
     }
 }

@@ -8,10 +8,6 @@ use core::fmt;
 pub enum Part {
     /// All maps of this light.
     Light,
-    /// One view, by its number in the technique's plan.
-    View(u8),
-    /// The objects list, as a source of tighter bounds.
-    Objects,
     /// The part of the view frustum that lies outside `scene.visible_depth`.
     Frustum,
     /// Receivers of a view that need no texel.
@@ -20,6 +16,8 @@ pub enum Part {
     Stabilise(u8),
     /// The extent of a view across the light.
     Window(u8),
+    /// The border of texels around a view's window.
+    Border(u8),
 }
 
 /// Why it was left out.
@@ -46,9 +44,11 @@ pub enum Why {
         /// Farthest visible eye depth, world units.
         far: f64,
     },
-    /// Everything beyond this eye depth was not asked for (`scene.visible_depth`).
-    BeyondVisibleDepth {
-        /// Farthest visible eye depth, world units.
+    /// Only these eye depths were asked for (`scene.visible_depth`).
+    NotVisible {
+        /// Nearest eye depth that is served, world units.
+        near: f64,
+        /// Farthest eye depth that is served, world units; may be infinite.
         far: f64,
     },
     /// The shadow of the casters' bounds covers only a part of the receivers in view; the rest is lit without a lookup.
@@ -63,6 +63,16 @@ pub enum Why {
     SceneIsInView {
         /// Area of the focused window over that of the scene's, 0.9 to 1.
         share: f64,
+    },
+    /// The frustum has no end, so that no window of constant size holds it: the map is fitted to the whole scene. A
+    /// `scene.visible_depth` with an end gives it one.
+    EndlessFrustum,
+    /// The map is too small for the border that its filter wants: near its rim the filter reads outside.
+    MapTooSmall {
+        /// Texels of border on each side.
+        border: u32,
+        /// Texels that would be wanted.
+        wanted: u32,
     },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
@@ -81,12 +91,11 @@ impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Light => write!(f, "light"),
-            Self::View(index) => write!(f, "view {index}"),
-            Self::Objects => write!(f, "objects"),
             Self::Frustum => write!(f, "frustum"),
             Self::Receivers(index) => write!(f, "view {index}, receivers"),
             Self::Stabilise(index) => write!(f, "view {index}, stabilisation"),
             Self::Window(index) => write!(f, "view {index}, window"),
+            Self::Border(index) => write!(f, "view {index}, border"),
         }
     }
 }
@@ -101,11 +110,15 @@ impl fmt::Display for Why {
             Self::OutsideVisibleDepth { near, far } => {
                 write!(f, "the visible depth [{near:.4}, {far:.4}] misses the frustum")
             }
-            Self::BeyondVisibleDepth { far } => write!(f, "not needed beyond the visible depth {far:.4}"),
+            Self::NotVisible { near, far } => write!(f, "not needed outside the visible depth [{near:.4}, {far:.4}]"),
             Self::LitWithoutLookup => write!(f, "outside the shadow of the casters' bounds: lit without a lookup"),
             Self::Degenerate { widened_to } => write!(f, "no extent across the light: widened to {widened_to:.3e}"),
             Self::SceneIsInView { share } => {
                 write!(f, "focusing: the view covers {:.0} % of the scene, whose map can be kept", 100.0 * share)
+            }
+            Self::EndlessFrustum => write!(f, "the frustum has no end: fitted to the scene (give visible_depth)"),
+            Self::MapTooSmall { border, wanted } => {
+                write!(f, "the map is too small: {border} texels, {wanted} wanted by the filter")
             }
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }

@@ -23,12 +23,13 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// The smallest box around points; [`EMPTY`](Self::EMPTY) for none.
+    /// The smallest box around points; [`EMPTY`](Self::EMPTY) for none. A NaN stays, for `fit` to refuse by name.
     #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points
-            .into_iter()
-            .fold(Self::EMPTY, |bounds, point| Self { min: bounds.min.min(point), max: bounds.max.max(point) })
+        points.into_iter().fold(Self::EMPTY, |bounds, point| Self {
+            min: DVec3::select(point.cmpge(bounds.min) | bounds.min.is_nan_mask(), bounds.min, point),
+            max: DVec3::select(point.cmple(bounds.max) | bounds.max.is_nan_mask(), bounds.max, point),
+        })
     }
 
     /// The smallest box around both.

@@ -69,7 +69,7 @@ const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
 #[must_use]
 pub fn module(key: WgslKey, bindings: Bindings) -> String {
     let Bindings { group, first } = bindings;
-    let (uniforms, map, compare) = (first, first + 1, first + 2);
+    let [uniforms, map, compare] = [0, 1, 2].map(|offset| first.saturating_add(offset));
     let mut text = String::new();
     for fragment in library(key) {
         text.push_str(fragment);

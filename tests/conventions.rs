@@ -91,7 +91,10 @@ fn texture_coordinates_have_row_zero_on_top() {
         let at = clip(&frame, point);
         let row = |row: [f32; 4]| Vec4::from_array(row).dot(point.extend(1.0));
         let uv = Vec2::new(row(uniforms.u_from_render), row(uniforms.v_from_render));
-        assert!((uv - Vec2::new(0.5 * at.x + 0.5, 0.5 - 0.5 * at.y)).length() < 1e-6);
+        // Within the viewport.
+        let viewport = frame.views[0].viewport.as_vec4() / 1024.0;
+        let expected = viewport.xy() + Vec2::new(0.5 * at.x + 0.5, 0.5 - 0.5 * at.y) * viewport.zw();
+        assert!((uv - expected).length() < 1e-6);
     }
 }
 

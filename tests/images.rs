@@ -111,9 +111,9 @@ fn wide_filters_raise_no_acne() {
                 scores.false_interior,
                 scores.leak_interior
             );
-            // Three times the acne of the bilinear filter and one bound: what coarse texels show of detail below their size
-            // depends on the filter, self-shadowing would show as percents.
-            let most = 3.0 * plain.false_interior + MOST_ACNE;
+            // A box five texels wide moves edges of coarse texels by more than the two pixels that count as an edge, and so
+            // adds some hundredths of a percent; self-shadowing would add percents.
+            let most = 3.0 * plain.false_interior + 3.0 * MOST_ACNE;
             assert!(scores.false_interior <= most, "{} {}: acne {}", case.name, filter.name(), scores.false_interior);
         }
     });

@@ -176,7 +176,7 @@ proptest! {
         let texels = |frame: &ShadowFrame, origin: DVec3| {
             let matrix = frame.views[0].clip_from_render.as_dmat4();
             let at = matrix * DVec4::from((place + point * 5.0 - origin, 1.0));
-            at.truncate().truncate() * 0.5 * f64::from(1_u32 << side)
+            at.truncate().truncate() * 0.5 * f64::from(frame.views[0].viewport.z)
         };
         let shift = texels(&before, eye) - texels(&after, moved);
         let off = (shift - shift.round()).abs().max_element();

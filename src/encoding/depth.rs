@@ -70,18 +70,18 @@ pub struct Lookup {
 #[must_use]
 pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach: f32, tap_reach: f32) -> Lookup {
     let (texel_u, texel_v) = (Vec4::from_array(view.texel_u), Vec4::from_array(view.texel_v));
-    let [constant, grazing, weight, manual] = view.bias;
+    let [constant, grazing, lost_reach, manual] = view.bias;
     let depth_from_render = Vec4::from_array(view.depth_from_render);
-    let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal)) * weight;
+    let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal));
     let step = fall.x.abs() + fall.y.abs();
     let cosine = -depth_from_render.xyz().dot(normal) * texel_v.w;
     let inverse = 1.0 / cosine.abs().max(grazing);
-    let along_normal = reach * step * (1.0 - cosine.abs() * inverse) + manual;
+    let along_normal = (reach + lost_reach) * step * (1.0 - cosine.abs() * inverse) + manual;
     let depth_per_fall = if cosine >= 0.0 { texel_u.w } else { -texel_u.w } * inverse;
     let at = (position + normal * along_normal).extend(1.0);
     Lookup {
         uv: Vec2::new(Vec4::from_array(view.u_from_render).dot(at), Vec4::from_array(view.v_from_render).dot(at)),
-        depth: depth_from_render.dot(at) - tap_reach * step * depth_per_fall - constant,
+        depth: depth_from_render.dot(at) - (tap_reach + lost_reach) * step * depth_per_fall - constant,
         slope: fall * depth_per_fall,
     }
 }
@@ -137,11 +137,7 @@ pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: V
 #[must_use]
 pub fn antumbra_visible(filter: Pcf, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
     let look = antumbra_lookup(view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
-    let rect = Vec4::from_array(view.rect);
-    if look.uv.cmpge(rect.xy()).all() && look.uv.cmple(rect.zw()).all() {
-        return antumbra_filter(filter, map, &look);
-    }
-    1.0
+    antumbra_filter(filter, map, &look)
 }
 
 /// Place of a point between texel centres.

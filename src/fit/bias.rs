@@ -24,9 +24,9 @@ pub enum Bias {
     Automatic,
     /// By hand, for engines that have tuned theirs. The automatic bias is off; only rounding is still accounted for.
     Manual {
-        /// Distance along the light, world units, at least 0 and finite.
+        /// Distance along the light, world units, 0 to 1e9.
         depth_world: f32,
-        /// Distance along the surface normal, in texels (their longer side), at least 0 and finite.
+        /// Distance along the surface normal, in texels (their longer side), 0 to 1e9.
         normal_texels: f32,
     },
 }
@@ -43,6 +43,9 @@ const RASTER_SNAP: f64 = 2.0 / 256.0;
 /// triangle in both passes (2), storing (1), rounded up to a power of two. Fewer shows as acne far from the origin; more
 /// lets light through at contacts, by that many steps of f32.
 const DEPTH_ROUNDINGS: f64 = 8.0;
+
+/// Largest manual bias, world units or texels: far beyond use, far below overflow.
+const LARGEST_MANUAL: f64 = 1e9;
 
 /// What a view's bias depends on.
 pub(crate) struct BiasInput<'a> {
@@ -69,18 +72,22 @@ impl Bias {
         let lost_texels =
             input.side * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))));
         let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
-        // A texel, as a step across the light that a plane may fall over.
-        let grown = input.texel * (1.0 + RASTER_SNAP + lost_texels);
+        // A texel, as a step across the light that a plane may fall over; none for a manual bias.
+        let automatic = if self == Self::Automatic { 1.0 } else { 0.0 };
+        let texel = input.texel * automatic;
         let step = |axis: DVec3, size: f64, last: f64| (axis * size).extend(last).as_vec4().to_array();
-        uniforms.texel_u = step(input.light.p(), grown.x, 1.0 / input.depth_range);
-        uniforms.texel_v = step(input.light.q(), -grown.y, input.depth_range);
-        let (constant, weight, offset) = match self {
-            Self::Automatic => (0.0, 1.0, 0.0),
+        uniforms.texel_u = step(input.light.p(), texel.x, 1.0 / input.depth_range);
+        uniforms.texel_v = step(input.light.q(), -texel.y, input.depth_range);
+        let (constant, offset) = match self {
+            Self::Automatic => (0.0, 0.0),
             Self::Manual { depth_world, normal_texels } => {
-                (depth_world / input.depth_range as f32, 0.0, normal_texels * input.texel.max_element() as f32)
+                let texel = input.texel.max_element();
+                (f64::from(depth_world) / input.depth_range, f64::from(normal_texels) * texel)
             }
         };
-        uniforms.bias = [lost_depth as f32 + constant, GRAZING_COSINE, weight, offset];
+        // What is added to a reach is lost whatever the filter is.
+        let lost_reach = RASTER_SNAP + lost_texels;
+        uniforms.bias = [lost_depth + constant, f64::from(GRAZING_COSINE), lost_reach, offset].map(narrowed);
     }
 }
 
@@ -90,10 +97,15 @@ impl Bias {
         let Self::Manual { depth_world, normal_texels } = self else { return Ok(()) };
         for (field, value) in [("bias.depth_world", depth_world), ("bias.normal_texels", normal_texels)] {
             let value = finite(field, f64::from(value))?;
-            if value < 0.0 {
-                return Err(FitError::OutOfRange { field, value, legal: "0 or more" });
+            if !(0.0..=LARGEST_MANUAL).contains(&value) {
+                return Err(FitError::OutOfRange { field, value, legal: "0 to 1e9" });
             }
         }
         Ok(())
     }
+}
+
+/// To f32, which holds no infinity here.
+fn narrowed(value: f64) -> f32 {
+    value.min(f64::from(f32::MAX)) as f32
 }

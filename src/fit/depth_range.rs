@@ -16,26 +16,33 @@ pub(crate) struct DepthAlongLight {
 }
 
 impl DepthAlongLight {
-    /// Over the receivers `vertices`, and over the casters that `cull` (the prism of the view's window) lets pass.
+    /// Over the receivers `vertices`, and over the casters that `cull` (the prism of the view's window) lets pass: objects,
+    /// where the scene lists any, else the casters' bounds; of each, the part that rays of the window can meet.
     ///
-    /// O(objects). Without objects the casters' bounds serve, cut to the window.
-    pub(crate) fn of(light: &LightSpace, vertices: &[DVec3], scene: &Scene, cull: &CullVolume) -> Self {
+    /// `None` when no object can throw a shadow into the window. O(objects).
+    pub(crate) fn of(light: &LightSpace, vertices: &[DVec3], scene: &Scene, cull: &CullVolume) -> Option<Self> {
         let depth = |position: DVec3| light.travel().dot(position);
-        let (mut near, far) = vertices
-            .iter()
-            .map(|vertex| depth(*vertex))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)));
         let first = |bounds: &Aabb| {
-            let bounds = Aabb::new(bounds.min - cull.origin, bounds.max - cull.origin);
-            depth(bounds.centre()) - light.travel().abs().dot(bounds.half_size())
+            let here = Aabb::new(bounds.min - cull.origin, bounds.max - cull.origin);
+            let nearest = depth(here.centre()) - light.travel().abs().dot(here.half_size());
+            nearest.max(entry(light, &here, cull))
         };
+        let mut near = f64::INFINITY;
         if scene.objects.is_empty() {
-            return Self { near: near.min(first(&scene.casters)), far };
+            near = first(&scene.casters);
         }
         for object in scene.objects.iter().filter(|object| object.casts && cull.may_cast(&object.bounds)) {
             near = near.min(first(&object.bounds));
         }
-        Self { near, far }
+        if near == f64::INFINITY {
+            return None;
+        }
+        let mut far = f64::NEG_INFINITY;
+        for vertex in vertices {
+            near = near.min(depth(*vertex));
+            far = far.max(depth(*vertex));
+        }
+        Some(Self { near, far })
     }
 
     /// Widened at both ends by what f32 loses of positions as far out as these depths and `margin`'s.
@@ -45,13 +52,35 @@ impl DepthAlongLight {
     }
 }
 
+/// A lower bound of the depth at which rays of the window enter a box (render space): for each pair of faces that rays do
+/// not run along, the least depth over the window at which they pass the first one; the largest of those.
+fn entry(light: &LightSpace, bounds: &Aabb, cull: &CullVolume) -> f64 {
+    let [left, right, down, up, ..] = cull.planes() else { return f64::NEG_INFINITY };
+    let mut entry = f64::NEG_INFINITY;
+    for axis in 0..3 {
+        let travel = light.travel()[axis];
+        if travel.abs() < LEAST_SLOPE {
+            continue;
+        }
+        // Rays start where (p, q) puts them; of the window, the corner from which they reach the face soonest.
+        let (p, q) = (light.p()[axis] * travel.signum(), light.q()[axis] * travel.signum());
+        let start = (p * -left.w).max(p * right.w) + (q * -down.w).max(q * up.w);
+        let face = if travel > 0.0 { bounds.min[axis] } else { -bounds.max[axis] };
+        entry = entry.max((face - start) / travel.abs());
+    }
+    entry
+}
+
+/// Slope below which the rays run along a pair of faces: the depth at which they enter would magnify rounding.
+const LEAST_SLOPE: f64 = 1e-3;
+
 /// Roundings of an f32 position on its way into a map: its own (½), the product with a matrix row (3 × ½), the matrix
 /// entries (½ each): 4 half steps, taken as whole ones. Fewer can push the outermost vertex out of the map; more costs
 /// texels only where positions are as coarse as texels.
 const POSITION_ROUNDINGS: f64 = 4.0;
 
 /// What f32 loses of coordinates as large as `reach`, world units. Never zero, so that nothing divides by zero.
-fn rounding(reach: f64) -> f64 {
+pub(crate) fn rounding(reach: f64) -> f64 {
     (POSITION_ROUNDINGS * f64::from(f32::EPSILON) * reach).max(LEAST_MARGIN)
 }
 

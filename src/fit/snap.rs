@@ -6,35 +6,32 @@
 use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, Projection};
+use crate::fit::depth_range::rounding;
+use crate::report::Why;
 use crate::warp::uniform::Window;
 
 /// Steps per doubling in which a snapped window may grow. More steps fit tighter but change the texel size, and so let
 /// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
 const STEPS_PER_OCTAVE: f64 = 16.0;
 
-/// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it stands or looks,
-/// placed on a world-fixed grid of texels. `texels` is the number of texels over its side, more than 1; `margin` is the
-/// rounding of positions (world units).
+/// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it looks, placed on a
+/// world-fixed grid of texels. `texels` is the number of texels over its side.
 ///
-/// `None` when the frustum has no finite sphere, or when the still window of the whole scene is no larger.
-pub(crate) fn snapped(
-    camera: &Camera,
-    far: f64,
-    margin: f64,
-    scene: &Window,
-    texels: f64,
-    origin: DVec3,
-) -> Option<Window> {
+/// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, or the scene is no larger.
+/// The grid holds to 1/1000 texel for eyes up to 1e11 texels from the world's origin, where f64 ends.
+pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, origin: DVec3) -> Result<Window, Why> {
     let (centre_depth, radius) = bounding_sphere(&camera.projection, far);
     if !radius.is_finite() {
-        return None;
+        return Err(Why::EndlessFrustum);
     }
+    // What f32 loses so far out, in powers of two: the size of a texel must not follow every step of the eye.
+    let reach = (camera.eye() - origin).length() + centre_depth.abs() + radius;
+    let radius = quantised_up(radius) + rounding(reach.log2().ceil().exp2());
     // One texel more than the sphere, so that snapping cannot cut it.
-    let radius = quantised_up(radius + margin);
     let texel = 2.0 * radius / (texels - 1.0);
     let side = texel * texels;
     if !(texels > 1.0) || scene.size().max_element() <= side {
-        return None;
+        return Err(Why::AlreadyStill);
     }
     // The lower corner, in ray coordinates of the world, on whole texels.
     let light = scene.light;
@@ -42,7 +39,7 @@ pub(crate) fn snapped(
     let grid = light.ray(origin).truncate();
     let corner = light.ray(centre).truncate() - DVec2::splat(radius);
     let low = (corner / texel).floor() * texel - grid;
-    Some(Window { light, low, high: low + side })
+    Ok(Window { light, low, high: low + side })
 }
 
 /// Scene windows grow in steps too, so that a moving object at their border changes the texels seldom.

@@ -36,96 +36,121 @@ pub(crate) struct Fitter<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Texels {
     /// Texels over the window, along a side.
-    pub(crate) inner: f64,
-    /// Texels of border on each side.
-    pub(crate) border: f64,
+    inner: f64,
+    /// Texels of border on each side, the ring among them.
+    border: f64,
+    /// Texels on each side that are never drawn: cleared to "lit", they answer for everything outside.
+    ring: f64,
+    /// Texels of border that the filter wants.
+    wanted: f64,
 }
 
 impl Texels {
     /// The filter reads up to its reach beyond a point that the bias has moved by up to √2 reaches across the light; one
-    /// more texel absorbs snapping. Maps too small for that border keep a third of their side inside.
+    /// more texel absorbs snapping, and one is the ring. Maps that are too small for that have what they can.
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
         let side = f64::from(side);
-        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() + 1.0;
-        let border = wanted.min((side / 3.0).floor());
-        Self { inner: side - 2.0 * border, border }
+        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() + 2.0;
+        let border = wanted.min(((side - 1.0) / 2.0).floor());
+        Self { inner: side - 2.0 * border, border, ring: border.min(1.0), wanted }
     }
 }
 
+/// A body, and the window that is laid around it.
+pub(crate) type Layout = (FocusBody, Window);
+
 impl Fitter<'_> {
     /// The window of least area around a body.
-    pub(crate) fn tight(&self, body: &FocusBody, frame: &mut ShadowFrame) -> Window {
-        let margin = rounding_margin(&body.vertices);
+    pub(crate) fn tight(&self, body: FocusBody) -> Layout {
         let window = Window::least_area(LightSpace::fixed(self.travel), &body.vertices);
-        if window.size().min_element() < margin {
-            frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: 2.0 * margin });
-        }
-        window.grown(margin)
+        let window = window.grown(rounding_margin(&body.vertices));
+        (body, window)
     }
 
-    /// The whole scene's body, where focusing on `window` would shrink texels by too little to be worth a map that has to
-    /// be drawn anew whenever the camera moves.
-    pub(crate) fn not_worth_focusing(&self, window: &Window) -> Option<(FocusBody, f64)> {
-        // Most windows are far smaller than the scene's bounds as the light sees them: no need to fit the scene.
+    /// The window of least area around what is in view; around the whole scene where that has hardly larger texels, because
+    /// a map that does not follow the camera need not be drawn anew.
+    pub(crate) fn focused(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+        let (body, window) = self.tight(body);
+        // Most windows are far smaller than the bounds as the light sees them: no need to fit the scene.
         let scene = &self.input.scene;
-        if scene.casters == scene.receivers && window.area() <= WORTH_FOCUSING * lit_area(&scene.receivers, self.travel)
-        {
-            return None;
+        let both = Aabb::new(scene.casters.min.max(scene.receivers.min), scene.casters.max.min(scene.receivers.max));
+        let meet = both.min.cmple(both.max).all();
+        if meet && window.area() <= WORTH_FOCUSING * lit_area(&both, self.travel) {
+            return (body, window);
         }
-        let whole = FocusBody::of_scene(scene, self.travel, self.input.origin).ok()?;
-        let still = Window::least_area(LightSpace::fixed(self.travel), &whole.vertices);
-        let share = window.area() / still.area();
-        (share > WORTH_FOCUSING).then_some((whole, share))
+        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else { return (body, window) };
+        let (whole, still) = self.tight(whole);
+        let share = (window.area() / still.area()).min(1.0);
+        if share <= WORTH_FOCUSING {
+            return (body, window);
+        }
+        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
+        (whole, still)
     }
 
     /// The window of the whole scene, which does not move with the camera.
-    pub(crate) fn still(&self, body: &FocusBody, frame: &mut ShadowFrame) -> Window {
-        frame.leave_out(Part::Stabilise(0), Why::AlreadyStill);
-        snap::still(&self.whole_scene(body), self.texels.inner, self.input.origin)
+    pub(crate) fn still(&self, whole: FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
+        frame.leave_out(Part::Stabilise(0), why);
+        let window = snap::still(&self.around(&whole), self.texels.inner, self.input.origin);
+        (whole, window)
     }
 
     /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller.
-    pub(crate) fn snapped(&self, body: &FocusBody, frame: &mut ShadowFrame) -> Window {
-        let camera = &self.input.camera;
+    pub(crate) fn snapped(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+        let (camera, scene) = (&self.input.camera, &self.input.scene);
         let (_, far) = camera.projection.depth_range();
-        let far = self.input.scene.visible_depth.map_or(far, |visible| far.min(visible.far));
-        let margin = rounding_margin(&body.vertices);
-        snap::snapped(camera, far, margin, &self.whole_scene(body), self.texels.inner, self.input.origin)
-            .unwrap_or_else(|| self.still(body, frame))
+        let far = scene.visible_depth.map_or(far, |visible| far.min(visible.far));
+        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else {
+            return self.still(body, Why::AlreadyStill, frame);
+        };
+        match snap::snapped(camera, far, &self.around(&whole), self.texels.inner, self.input.origin) {
+            Ok(window) => (body, window),
+            Err(why) => self.still(whole, why, frame),
+        }
     }
 
-    /// The window of the receivers of the whole scene, in the fixed frame of the light.
-    fn whole_scene(&self, body: &FocusBody) -> Window {
-        let whole = FocusBody::of_scene(&self.input.scene, self.travel, self.input.origin);
-        let vertices = whole.as_ref().map_or(&body.vertices, |scene| &scene.vertices);
-        Window::around(LightSpace::fixed(self.travel), vertices).grown(rounding_margin(vertices))
+    /// The window around a body in the fixed frame of the light.
+    fn around(&self, body: &FocusBody) -> Window {
+        let window = Window::around(LightSpace::fixed(self.travel), &body.vertices);
+        window.grown(rounding_margin(&body.vertices))
     }
 
     /// From a window to a view and its uniforms, appended to the frame.
-    pub(crate) fn view(&self, body: &FocusBody, window: &Window, frame: &mut ShadowFrame) {
-        let input = self.input;
-        // Texels, and a border of them around the window for the filter and the bias.
+    pub(crate) fn view(&self, (body, window): &Layout, frame: &mut ShadowFrame) {
+        let (input, texels) = (self.input, &self.texels);
+        let margin = rounding_margin(&body.vertices);
+        // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
         let light = &window.light;
-        let texel = window.size() / self.texels.inner;
-        let low = window.low - texel * self.texels.border;
-        let high = window.high + texel * self.texels.border;
+        let texel = window.size() / texels.inner;
+        let low = window.low - texel * (texels.border - texels.ring);
+        let high = window.high + texel * (texels.border - texels.ring);
         // Casters, and the depth that they and the receivers need.
-        let farthest = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
-        let cull = cull::prism(light, low, high, farthest, input.origin);
-        let depth =
-            DepthAlongLight::of(light, &body.vertices, &input.scene, &cull).widened(rounding_margin(&body.vertices));
-        // One matrix, in f64, narrowed once.
+        let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+        let cull = cull::prism(light, low, high, last + margin, input.origin);
+        let Some(depth) = DepthAlongLight::of(light, &body.vertices, &input.scene, &cull) else {
+            return frame.leave_out(Part::Light, Why::NothingCastsHere);
+        };
+        let depth = depth.widened(margin);
+        // One matrix, in f64, narrowed once; and what the receiver shader reads.
         let clip_from_ray = Map::crop(low.extend(depth.near), high.extend(depth.far));
         let clip_from_render = clip_from_ray * light.ray_from_render();
-        // What the receiver shader reads.
-        let mut uniforms = affine_uniforms(&clip_from_render);
+        let mut uniforms = self.affine_uniforms(&clip_from_render);
         self.bias.write(&self.bias_input(body, light, texel, depth, &clip_from_render), &mut uniforms);
         let (pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, texel.max_element());
+        // Say what was cut.
+        if window.size().min_element() < 3.0 * margin {
+            frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: window.size().min_element() });
+        }
+        if texels.border < texels.wanted {
+            let why = Why::MapTooSmall { border: texels.border as u32, wanted: texels.wanted as u32 };
+            frame.leave_out(Part::Border(0), why);
+        }
+        let ring = texels.ring as u32;
         let index = frame.views.len();
         let view = ShadowView {
             clip_from_render: clip_from_render.narrow(),
             depth_from_render: clip_from_render.narrow_row(2),
-            viewport: UVec4::new(0, 0, input.map.side, input.map.side),
+            viewport: UVec4::new(ring, ring, input.map.side - 2 * ring, input.map.side - 2 * ring),
             layer: 0,
             cull,
             texel: TexelSize { world: [texel.min_element() as f32, texel.max_element() as f32], pixels },
@@ -151,26 +176,30 @@ impl Fitter<'_> {
         let side = f64::from(self.input.map.side);
         BiasInput { light, texel, depth_range: depth.far - depth.near, clip_from_render, reach, side }
     }
+
+    /// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.
+    fn affine_uniforms(&self, clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
+        // The viewport's share of the map.
+        let ring = self.texels.ring / f64::from(self.input.map.side);
+        let half = 0.5 - ring;
+        let row = |row: usize, sign: f64| {
+            let row = clip_from_render.row(row) * (half * sign);
+            row.truncate().extend(row.w + 0.5).as_vec4().to_array()
+        };
+        let (low, high) = (ring as f32, (1.0 - ring) as f32);
+        ViewUniforms {
+            u_from_render: row(0, 1.0),
+            v_from_render: row(1, -1.0),
+            w_from_render: [0.0, 0.0, 0.0, 1.0],
+            depth_from_render: clip_from_render.narrow_row(2).to_array(),
+            rect: [low, low, high, high],
+            ..ViewUniforms::LIT
+        }
+    }
 }
 
 /// Area of a box as the light sees it: no window around it is smaller.
 fn lit_area(bounds: &Aabb, travel: DVec3) -> f64 {
     let size = bounds.max - bounds.min;
     travel.abs().dot(DVec3::new(size.y * size.z, size.x * size.z, size.x * size.y))
-}
-
-/// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.
-fn affine_uniforms(clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
-    let half = |row: usize, sign: f64| {
-        let row = clip_from_render.row(row) * (0.5 * sign);
-        row.truncate().extend(row.w + 0.5).as_vec4().to_array()
-    };
-    ViewUniforms {
-        u_from_render: half(0, 1.0),
-        v_from_render: half(1, -1.0),
-        w_from_render: [0.0, 0.0, 0.0, 1.0],
-        depth_from_render: clip_from_render.narrow_row(2).to_array(),
-        rect: [0.0, 0.0, 1.0, 1.0],
-        ..ViewUniforms::LIT
-    }
 }

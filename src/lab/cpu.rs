@@ -9,7 +9,7 @@
 
 use std::time::Instant;
 
-use glam::{DVec3, UVec2};
+use glam::{DVec3, UVec2, UVec4};
 use rayon::prelude::*;
 
 use super::projection::clip_from_render;
@@ -57,16 +57,17 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     };
     // Rasterise from the light, every object that may cast.
     let start = Instant::now();
-    let mut map = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
+    let mut drawn = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
     let objects = subject.objects.iter().zip(&subject.model.objects);
     let casters: Vec<_> =
         objects.filter(|(object, _)| view.cull.may_cast(&object.bounds)).map(|(_, range)| range.clone()).collect();
     let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render: None, origin };
-    rasterise(&mut map, &subject.model, &casters, &pass);
+    rasterise(&mut drawn, &subject.model, &casters, &pass);
+    let map = placed(&drawn, view.viewport, frame.map.side);
     let casters_ms = start.elapsed().as_secs_f64() * 1e3;
     // Project each visible point into the map.
     let start = Instant::now();
-    let map = DepthMap { size: UVec2::new(map.width, map.height), depth: &map.depth };
+    let map = DepthMap { size: UVec2::splat(frame.map.side), depth: &map };
     let uniforms = &frame.uniforms.views[0];
     let filter = frame.wgsl.filter;
     let lit = |hit: &Option<Hit>| match hit {
@@ -75,4 +76,16 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     };
     let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();
     CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
+}
+
+/// A view's depths at their place in the map; the rest is cleared.
+fn placed(drawn: &DepthTarget, viewport: UVec4, side: u32) -> Vec<f32> {
+    let [left, top, width, _] = viewport.to_array().map(|length| length as usize);
+    let side = side as usize;
+    let mut map = vec![drawn.mode.cleared(); side * side];
+    for (row, depths) in drawn.depth.chunks_exact(width).enumerate() {
+        let start = (top + row) * side + left;
+        map[start..start + width].copy_from_slice(depths);
+    }
+    map
 }

@@ -141,8 +141,11 @@ impl Convex {
                 }
             }
         }
-        self.vertices = vertices;
-        self.edges = edges;
+        // Only what is in use is copied: assigning the lists would copy their capacity.
+        self.vertices.clear();
+        self.edges.clear();
+        let _ = self.vertices.try_extend_from_slice(&vertices);
+        let _ = self.edges.try_extend_from_slice(&edges);
     }
 }
 

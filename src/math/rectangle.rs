@@ -20,15 +20,15 @@ pub(crate) fn least_area_axis<const CAP: usize>(points: impl Iterator<Item = DVe
     let mut best_area = f64::INFINITY;
     for (index, &from) in hull.iter().enumerate() {
         let to = hull[(index + 1) % hull.len()];
-        let Some(axis) = (to - from).try_normalize() else { continue };
-        let extent = extent(&hull, axis);
-        let area = extent.x * extent.y;
+        // Not normalised: both extents come out longer by the edge's length.
+        let edge = to - from;
+        let area = extent(&hull, edge).element_product() / edge.length_squared();
         if area < best_area {
             best_area = area;
-            best = Some(axis);
+            best = Some(edge);
         }
     }
-    best
+    best?.try_normalize()
 }
 
 /// Extent of `points` along `axis` and across it.
