@@ -101,9 +101,12 @@ pub fn inputs() -> impl Strategy<Value = Inputs> {
     let place = prop_oneof![3 => Just(0.0), 1 => (1.0..7.0_f64).prop_map(|log| 10.0_f64.powf(log))];
     let light = prop_oneof![3 => direction().prop_map(|d| (d, 0.0)), 1 => (direction(), Just(1.0)), 1 => (direction(), Just(-1.0))];
     let visible = prop_oneof![3 => Just(None), 1 => (0.0..10.0_f64, 0.0..1e4_f64).prop_map(Some)];
+    // Render space around the world's origin, the eye, or somewhere near the scene.
+    let offset = (direction(), -3.0..5.0_f64).prop_map(|(to, log)| to * 10.0_f64.powf(log));
+    let origin = (0..3_u8, offset);
     let focus = (0.0..1.0_f64, 0.0..1.0_f64, 0.0..1.0_f64);
-    (place, (direction(), direction()), light, projection(), visible, 0..15_u32, any::<bool>(), focus).prop_flat_map(
-        |(distance, (to, view), (light, along), projection, visible, log_side, eye_relative, focus)| {
+    (place, (direction(), direction()), light, projection(), visible, 0..15_u32, origin, focus).prop_flat_map(
+        |(distance, (to, view), (light, along), projection, visible, log_side, (place_of_origin, offset), focus)| {
             let eye = to * distance;
             let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, view);
             let camera = Camera {
@@ -111,11 +114,15 @@ pub fn inputs() -> impl Strategy<Value = Inputs> {
                 ..Camera::perspective(DMat4::from_rotation_translation(rotation, eye), 1.0, 1.0, 1.0, 2.0)
             };
             let travel = if along == 0.0 { light } else { (view * along + light * 1e-15).normalize() };
-            let origin = if eye_relative { eye } else { DVec3::ZERO };
             let visible = visible.map(|(near, length)| DepthRange { near, far: near + length });
             let focus = view_point(&camera, [focus.0, focus.1, focus.2]);
             (bounds(focus), size()).prop_flat_map(move |(receivers, distance)| {
                 let above = receivers.centre() - travel * distance;
+                let origin = match place_of_origin {
+                    0 => DVec3::ZERO,
+                    1 => eye,
+                    _ => receivers.centre() + offset,
+                };
                 bounds(above).prop_map(move |casters| Inputs {
                     camera,
                     travel,
