@@ -1,0 +1,234 @@
+//! Bugs, verbatim: the input that showed each, and one sentence.
+
+use antumbra::{
+    Aabb, Bias, Camera, DepthRange, FitError, FitInput, Light, MapBudget, Object, Part, Remix, Scene, ShadowFrame,
+    ShadowTechnique, Stabilise, Why, techniques,
+};
+use glam::{DMat4, DVec3};
+
+fn room(half: f64) -> Aabb {
+    Aabb::new(DVec3::splat(-half), DVec3::splat(half))
+}
+
+fn input(scene: Scene) -> FitInput {
+    FitInput {
+        camera: Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, 0.1, 100.0),
+        light: Light::Directional { travel: DVec3::new(0.6, -0.8, 0.0) },
+        scene,
+        map: MapBudget::one(1024),
+        origin: DVec3::ZERO,
+        previous: None,
+    }
+}
+
+fn whys(frame: &ShadowFrame) -> Vec<(Part, Why)> {
+    frame.left_out.iter().map(|cut| (cut.part, cut.why)).collect()
+}
+
+/// Casters and receivers in one box: rounding of its silhouette planes was reported as "outside the shadow of the casters", and
+/// hid the cut that the visible depth made.
+#[test]
+fn reasons_are_true_and_none_hides_another() {
+    let scene = Scene { visible_depth: Some(DepthRange { near: 5.0, far: 50.0 }), ..Scene::within(room(300.0)) };
+    let frame = techniques::fsm().fit(&input(scene)).unwrap();
+    assert_eq!(whys(&frame), [(Part::Frustum, Why::NotVisible { near: 5.0, far: 50.0 })]);
+    let ahead = DVec3::new(0.0, 3.0, -20.0);
+    let small = Scene { casters: Aabb::new(ahead - 2.0, ahead + 2.0), ..scene };
+    let both = whys(&techniques::fsm().fit(&input(small)).unwrap());
+    assert!(both.contains(&(Part::Receivers(0), Why::LitWithoutLookup)), "{both:?}");
+    assert!(both.contains(&(Part::Frustum, Why::NotVisible { near: 5.0, far: 50.0 })), "{both:?}");
+}
+
+/// A snapped map said that it stands still, and its depths followed the camera all the same.
+#[test]
+fn still_maps_are_still() {
+    let remix = Remix { stabilise: Stabilise::SnapTexels, ..techniques::fsm() };
+    let fit = |eye: DVec3| {
+        let mut input = input(Scene::within(Aabb::new(DVec3::new(-9.0, 0.0, -9.0), DVec3::new(9.0, 6.0, 9.0))));
+        input.camera.world_from_view = Camera::look_at(eye, DVec3::ZERO, DVec3::Y);
+        remix.fit(&input).unwrap()
+    };
+    let (a, b) = (fit(DVec3::new(0.0, 3.0, 14.0)), fit(DVec3::new(5.0, 2.0, 12.0)));
+    assert!(whys(&a).contains(&(Part::Stabilise(0), Why::AlreadyStill)));
+    assert_eq!(a.views[0].clip_from_render, b.views[0].clip_from_render);
+}
+
+/// An infinite far plane was reported as "does not move with the camera" instead of what it is.
+#[test]
+fn an_endless_frustum_says_so() {
+    let remix = Remix { stabilise: Stabilise::SnapTexels, ..techniques::fsm() };
+    let mut input = input(Scene::within(room(30_000.0)));
+    input.camera = Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, 0.1, f64::INFINITY);
+    assert!(whys(&remix.fit(&input).unwrap()).contains(&(Part::Stabilise(0), Why::EndlessFrustum)));
+    input.scene.visible_depth = Some(DepthRange { near: 0.0, far: 100.0 });
+    let frame = remix.fit(&input).unwrap();
+    assert!(frame.views[0].texel.world[1] < 1.0, "{:?}", frame.views[0].texel);
+}
+
+/// The sun exactly along flat ground: "the view covers 23000000000000 % of the scene", and the focus was given up.
+#[test]
+fn shares_are_shares() {
+    let ground = Aabb::new(DVec3::new(-1000.0, 0.0, -1000.0), DVec3::new(1000.0, 0.0, 1000.0));
+    let mut input = input(Scene { visible_depth: Some(DepthRange { near: 0.1, far: 30.0 }), ..Scene::within(ground) });
+    input.light = Light::Directional { travel: DVec3::X };
+    input.camera.world_from_view = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 1.0, -10.0), DVec3::Y);
+    let frame = techniques::fsm().fit(&input).unwrap();
+    for (_, why) in whys(&frame) {
+        assert!(!matches!(why, Why::SceneIsInView { share } if !(0.9..=1.0).contains(&share)), "{why:?}");
+    }
+    assert!(frame.views[0].texel.world[1] < 0.1, "{:?}", frame.views[0].texel);
+}
+
+/// The casters' box was said to be cut to the window and was not: a city's map was five times as deep as it had to be.
+#[test]
+fn depth_starts_at_the_first_caster_of_the_window() {
+    let city = Aabb::new(DVec3::new(-1400.0, 0.0, -1400.0), DVec3::new(1400.0, 180.0, 1400.0));
+    let mut input = input(Scene { visible_depth: Some(DepthRange { near: 0.1, far: 50.0 }), ..Scene::within(city) });
+    input.light = Light::Directional { travel: DVec3::new(0.5, -0.6, 0.62).normalize() };
+    input.camera.world_from_view = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 1.0, -10.0), DVec3::Y);
+    let frame = techniques::fsm().fit(&input).unwrap();
+    let range = 1.0 / frame.views[0].depth_from_render.truncate().length();
+    // From the roofs, 180 up, along a light of slope 0.6, and the body's own 100 or so.
+    assert!(range < 500.0, "{range}");
+}
+
+/// One object that casts, outside the window: a map was drawn for nothing, without a word.
+#[test]
+fn no_object_in_the_window_means_no_map() {
+    let far = Object { bounds: Aabb::new(DVec3::splat(5000.0), DVec3::splat(5001.0)), casts: true };
+    let idle = Object { bounds: room(1.0), casts: false };
+    let objects = [far, idle];
+    let frame = techniques::fsm().fit(&input(Scene { objects: &objects, ..Scene::within(room(6000.0)) })).unwrap();
+    assert!(frame.views.is_empty());
+    assert!(whys(&frame).contains(&(Part::Light, Why::NothingCastsHere)));
+}
+
+/// A map smaller than its filter's border said nothing.
+#[test]
+fn tiny_maps_say_what_they_lack() {
+    for side in [1, 2, 4, 8] {
+        let input = FitInput { map: MapBudget::one(side), ..input(Scene::within(room(30.0))) };
+        let frame = techniques::fsm().fit(&input).unwrap();
+        assert!(
+            whys(&frame).iter().any(|(part, why)| *part == Part::Border(0) && matches!(why, Why::MapTooSmall { .. }))
+        );
+    }
+    let enough = techniques::fsm().fit(&input(Scene::within(room(30.0)))).unwrap();
+    assert!(!whys(&enough).iter().any(|(_, why)| matches!(why, Why::MapTooSmall { .. })));
+}
+
+/// A NaN among the points was forgotten, and with it all points before it.
+#[test]
+fn bounds_around_nan_are_refused_by_name() {
+    let bounds = Aabb::around([DVec3::new(-5.0, 0.0, 0.0), DVec3::NAN, DVec3::ONE]);
+    let error = techniques::fsm().fit(&input(Scene::within(bounds))).unwrap_err();
+    assert!(matches!(error, FitError::NotFinite { field: "scene.casters.min", .. }), "{error}");
+}
+
+/// A manual bias of the largest f32 overflowed to infinity in the uniforms.
+#[test]
+fn manual_bias_is_bounded() {
+    let fit = |depth_world, normal_texels| {
+        let bias = Bias::Manual { depth_world, normal_texels };
+        Remix { bias, ..techniques::fsm() }.fit(&input(Scene::within(room(1e-3))))
+    };
+    assert!(matches!(fit(f32::MAX, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
+    assert!(matches!(fit(0.0, f32::INFINITY), Err(FitError::NotFinite { field: "bias.normal_texels", .. })));
+    assert!(matches!(fit(-1.0, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
+    let frame = fit(1e9, 1e9).unwrap();
+    assert!(frame.uniforms.views[0].bias.iter().all(|value| value.is_finite()));
+}
+
+/// Lights that are not served yet, and every kind of illegal input, are refused by name.
+#[test]
+fn refusals_name_the_field() {
+    let good = input(Scene::within(room(30.0)));
+    let field = |input: &FitInput| match techniques::fsm().fit(input).unwrap_err() {
+        FitError::NotFinite { field, .. }
+        | FitError::OutOfRange { field, .. }
+        | FitError::NotUnit { field, .. }
+        | FitError::NotRigid { field, .. }
+        | FitError::NotYet { field, .. } => field,
+        FitError::NotOrdered { lower, .. } => lower,
+        other => panic!("{other}"),
+    };
+    let position = DVec3::ZERO;
+    let spot = Light::Spot { position, travel: DVec3::X, half_angle: 0.5, range: 9.0 };
+    for light in [spot, Light::Point { position, range: 9.0 }] {
+        assert_eq!(field(&FitInput { light, ..good }), "light");
+    }
+    for (light, name) in [
+        (Light::Point { position, range: 0.0 }, "light.range"),
+        (Light::Point { position: DVec3::NAN, range: 1.0 }, "light.position"),
+        (Light::Spot { position, travel: DVec3::X, half_angle: 1.6, range: 9.0 }, "light.half_angle"),
+        (Light::Directional { travel: DVec3::ZERO }, "light.travel"),
+        (Light::Directional { travel: DVec3::splat(f64::INFINITY) }, "light.travel"),
+    ] {
+        assert_eq!(field(&FitInput { light, ..good }), name);
+    }
+    for (map, name) in [
+        (MapBudget { side: 0, ..good.map }, "map.side"),
+        (MapBudget { side: 16_385, ..good.map }, "map.side"),
+        (MapBudget { layers: 0, ..good.map }, "map.layers"),
+        (MapBudget { views: 9, ..good.map }, "map.views"),
+    ] {
+        assert_eq!(field(&FitInput { map, ..good }), name);
+    }
+    let inverted = Aabb::new(DVec3::ONE, DVec3::ZERO);
+    for (scene, name) in [
+        (Scene { casters: inverted, ..good.scene }, "scene.casters.min"),
+        (Scene { receivers: inverted, ..good.scene }, "scene.receivers.min"),
+        (Scene { receivers: room(1e16), ..good.scene }, "scene.receivers.min"),
+        (Scene { visible_depth: Some(DepthRange { near: 2.0, far: 1.0 }), ..good.scene }, "scene.visible_depth.near"),
+        (
+            Scene { visible_depth: Some(DepthRange { near: 2.0, far: f64::NAN }), ..good.scene },
+            "scene.visible_depth.far",
+        ),
+    ] {
+        assert_eq!(field(&FitInput { scene, ..good }), name);
+    }
+    for (near, far, name) in [
+        (0.0, 1.0, "camera.projection.near"),
+        (-1.0, 1.0, "camera.projection.near"),
+        (2.0, 1.0, "camera.projection.near"),
+        (f64::NAN, 1.0, "camera.projection.near"),
+        (1.0, f64::NAN, "camera.projection.far"),
+        (1.0, 1e300, "camera.projection.far"),
+    ] {
+        let camera = Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, near, far);
+        assert_eq!(field(&FitInput { camera, ..good }), name, "{near} {far}");
+    }
+    assert_eq!(field(&FitInput { origin: DVec3::NAN, ..good }), "origin");
+}
+
+/// Empty scenes are not errors: no views, and the reason.
+#[test]
+fn nothing_to_shadow_is_not_an_error() {
+    let reason = |scene| {
+        let frame = techniques::fsm().fit(&input(scene)).unwrap();
+        assert!(frame.views.is_empty());
+        whys(&frame)[0].1
+    };
+    let all = Scene::within(room(30.0));
+    assert_eq!(reason(Scene { casters: Aabb::EMPTY, ..all }), Why::NoCasters);
+    assert_eq!(reason(Scene { receivers: Aabb::EMPTY, ..all }), Why::NoReceivers);
+    let behind = Aabb::new(DVec3::new(-1.0, -1.0, 5.0), DVec3::new(1.0, 1.0, 9.0));
+    assert!(matches!(reason(Scene { receivers: behind, ..all }), Why::NoReceiversInView { .. }));
+    let below = Aabb::new(DVec3::new(-30.0, -90.0, -30.0), DVec3::new(30.0, -80.0, 30.0));
+    assert_eq!(reason(Scene { casters: below, ..all }), Why::NothingCastsHere);
+    let hidden = Some(DepthRange { near: 500.0, far: 600.0 });
+    assert!(matches!(reason(Scene { visible_depth: hidden, ..all }), Why::OutsideVisibleDepth { .. }));
+}
+
+/// Casters behind the eye and outside the frustum that shadow the view are kept.
+#[test]
+fn a_tower_behind_the_camera_casts() {
+    let mut input = input(Scene::within(room(300.0)));
+    input.scene.visible_depth = Some(DepthRange { near: 0.1, far: 20.0 });
+    input.light = Light::Directional { travel: DVec3::new(0.0, -0.3, -1.0).normalize() };
+    let frame = techniques::fsm().fit(&input).unwrap();
+    let tower = Aabb::new(DVec3::new(-1.0, 15.0, 60.0), DVec3::new(1.0, 25.0, 62.0));
+    let aside = Aabb::new(DVec3::new(80.0, 0.0, -10.0), DVec3::new(82.0, 30.0, -8.0));
+    assert!(frame.views[0].cull.may_cast(&tower));
+    assert!(!frame.views[0].cull.may_cast(&aside));
+}
