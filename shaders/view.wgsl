@@ -6,11 +6,10 @@ struct AntumbraView {
     w_from_render: vec4f,
     // Row: light depth in [0, 1], linear in position.
     depth_from_render: vec4f,
-    // One texel step in u and in v across the light, world units; w: depth per world unit, and its inverse.
-    texel_u: vec4f,
-    texel_v: vec4f,
-    // Constant bias (depth), cosine of incidence that counts as grazing, texels that rounding adds to a filter's reach, manual
-    // normal offset (world units).
+    // Fall of a plane over one texel step in u and in v, for each unit of dot(row, normal); square of the depth per world
+    // unit; size of dot(depth row, normal) below which a surface grazes the light.
+    texel: vec4f,
+    // Constant bias (depth), texels that rounding adds to a filter's reach, manual normal offset (world units), 0.
     bias: vec4f,
     // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,

@@ -191,7 +191,7 @@ impl CullVolume {
     }
 }
 
-/// The receiver shader's uniform block. A key for one view reads only its first element (128 bytes).
+/// The receiver shader's uniform block. A key for one view reads only its first element (112 bytes).
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowUniforms {
@@ -213,12 +213,12 @@ pub struct ViewUniforms {
     pub w_from_render: [f32; 4],
     /// Linear light depth in [0, 1]: a row.
     pub depth_from_render: [f32; 4],
-    /// xyz: one texel step in u across the light, world units. w: depth per world unit along the light.
-    pub texel_u: [f32; 4],
-    /// xyz: one texel step in v across the light, world units. w: world units per depth.
-    pub texel_v: [f32; 4],
-    /// x: constant bias, depth units. y: cosine of incidence below which a surface grazes the light. z: texels that rounding
-    /// adds to the reach of a filter. w: manual normal offset, world units.
+    /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each unit of
+    /// `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along the light.
+    /// w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
+    pub texel: [f32; 4],
+    /// x: constant bias, depth units. y: texels that rounding adds to the reach of a filter. z: manual normal offset, world
+    /// units. w: 0.
     pub bias: [f32; 4],
     /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
     /// that lookups beyond the window read lit.
@@ -232,9 +232,8 @@ impl ViewUniforms {
         v_from_render: [0.0; 4],
         w_from_render: [0.0, 0.0, 0.0, 1.0],
         depth_from_render: [0.0, 0.0, 0.0, -1.0],
-        texel_u: [0.0; 4],
-        texel_v: [0.0; 4],
-        bias: [0.0, 1.0, 0.0, 0.0],
+        texel: [0.0, 0.0, 0.0, 1.0],
+        bias: [0.0; 4],
         rect: [0.0; 4],
     };
 }

@@ -250,6 +250,8 @@ impl ShadowMaps {
         });
         let [x, y, width, height] = view.viewport.as_vec4().to_array();
         pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        // What lies outside has to stay clear: lookups beyond the view read lit there.
+        pass.set_scissor_rect(view.viewport.x, view.viewport.y, view.viewport.z, view.viewport.w);
         pass
     }
 

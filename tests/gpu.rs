@@ -162,13 +162,21 @@ fn the_map_holds_analytic_depth() {
     let map = read_depth(&stage.gpu, &maps).unwrap();
     let render_from_clip = frame.views[0].clip_from_render.as_dmat4().inverse();
     let travel = support::travel();
+    let viewport = frame.views[0].viewport;
+    let (low, extent) = (UVec2::new(viewport.x, viewport.y), UVec2::new(viewport.z, viewport.w));
     let (mut hits, mut misses, mut strays) = (0, 0, 0);
     for y in 0..side {
         for x in 0..side {
-            let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / f64::from(side);
+            let stored = map[(y * side + x) as usize];
+            // The rim outside the viewport stays clear.
+            let at = UVec2::new(x, y);
+            if at.cmplt(low).any() || at.cmpge(low + extent).any() {
+                assert_eq!(stored.to_bits(), 1.0_f32.to_bits(), "{at}");
+                continue;
+            }
+            let centre = ((at - low).as_dvec2() + 0.5) / extent.as_dvec2();
             let ndc = centre * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
             let start = render_from_clip.project_point3(ndc.extend(0.0));
-            let stored = map[(y * side + x) as usize];
             let Some((distance, _)) = support::trace(&stage.model, start, travel, 0.0) else {
                 misses += 1;
                 strays += usize::from(stored < 1.0);

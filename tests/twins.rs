@@ -151,33 +151,50 @@ impl LookupBound {
         };
         let n = normal.to_array().map(f64::from);
         let p = position.to_array().map(f64::from);
-        let [_, grazing, weight, manual] = view.bias.map(f64::from);
-        let (per_unit, range) = (f64::from(view.texel_u[3]), f64::from(view.texel_v[3]));
-        // The fall, its sum, and the cosine.
-        let fall = [view.texel_u, view.texel_v].map(|row| magnitude(row, n, 0.0) * weight);
+        let [constant, lost, manual, _] = view.bias.map(f64::from);
+        let [fall_u, fall_v, depth_squared, grazing] = view.texel.map(f64::from);
+        // The climb, the fall, its sum, and the cosine.
+        let climb = [view.u_from_render, view.v_from_render].map(|row| magnitude(row, n, 0.0));
+        let climb_error = climb.map(|size| size * dot_error);
+        let fall = [climb[0] * fall_u, climb[1] * fall_v];
         let fall_error = fall.map(|size| size * (dot_error + 2.0 * ULP));
         let (step, step_error) = (fall[0] + fall[1], fall_error[0] + fall_error[1] + (fall[0] + fall[1]) * 2.0 * ULP);
-        let cosine_error = magnitude(view.depth_from_render, n, 0.0) * range.abs() * (dot_error + 2.0 * ULP);
+        let cosine = magnitude(view.depth_from_render, n, 0.0);
+        let cosine_error = cosine * dot_error;
         let inverse = 1.0 / grazing.max(f64::from(f32::MIN_POSITIVE));
         let inverse_error = inverse * inverse * cosine_error + 5.0 * ULP * inverse;
-        // The lift, and where it leads.
+        // The lift along the normal: it moves the place, and the depth.
         let share_error = inverse * cosine_error + inverse_error * grazing + 6.0 * ULP;
-        let reach = filter.reach();
+        let reach = filter.reach() + lost;
         let along = reach * step + manual.abs();
-        let along_error = reach * (step_error + step * share_error) + 6.0 * ULP * along;
-        let at: [f64; 3] = core::array::from_fn(|axis| p[axis].abs() + n[axis].abs() * along);
-        let at_error: [f64; 3] = core::array::from_fn(|axis| n[axis].abs() * along_error + 4.0 * ULP * at[axis]);
-        let row = |row: [f32; 4]| magnitude(row, at_error, 0.0) + magnitude(row, at, 1.0) * dot_error;
-        // The lift along the light.
-        let fall_depth = per_unit.abs() * inverse;
-        let fall_depth_error = per_unit.abs() * (inverse_error + 2.0 * ULP * inverse);
-        let lift = filter.tap_reach() * (step_error * fall_depth + step * (fall_depth_error + 4.0 * ULP * fall_depth));
-        let sum = magnitude(view.depth_from_render, at, 1.0) + step * fall_depth + f64::from(view.bias[0]);
+        let along_error = reach * (step_error + step * share_error) + 8.0 * ULP * along;
+        let row = |row: [f32; 4]| magnitude(row, p, 1.0) * dot_error;
+        let moved =
+            |size: f64, error: f64, by: f64, by_error: f64| size * by_error + error * by + 4.0 * ULP * size * by;
+        let uv = |axis: usize, row_error: f64, whole: f64| {
+            row_error
+                + moved(climb[axis], climb_error[axis], along, along_error)
+                + 2.0 * ULP * (whole + climb[axis] * along)
+        };
+        // The lift along the light; its sign is in doubt where the cosine's is.
+        let exact: f64 = (0..3).map(|axis| f64::from(view.depth_from_render[axis]) * n[axis]).sum();
+        let flips = if exact.abs() <= cosine_error { 2.0 } else { 0.0 };
+        let fall_depth = depth_squared * inverse;
+        let fall_depth_error = depth_squared * (inverse_error + 2.0 * ULP * inverse);
+        let tap_reach = filter.tap_reach() + lost;
+        let tap = tap_reach * (step_error * fall_depth + step * (fall_depth_error + (flips + 6.0 * ULP) * fall_depth));
+        let sum = magnitude(view.depth_from_render, p, 1.0) + cosine * along + tap_reach * step * fall_depth + constant;
         Self {
-            uv: [row(view.u_from_render), row(view.v_from_render)],
-            depth: row(view.depth_from_render) + lift + 6.0 * ULP * sum,
+            uv: [
+                uv(0, row(view.u_from_render), magnitude(view.u_from_render, p, 1.0)),
+                uv(1, row(view.v_from_render), magnitude(view.v_from_render, p, 1.0)),
+            ],
+            depth: row(view.depth_from_render)
+                + moved(cosine, cosine_error, along, along_error)
+                + tap
+                + 6.0 * ULP * sum,
             slope: core::array::from_fn(|axis| {
-                fall_error[axis] * fall_depth + fall[axis] * (fall_depth_error + 2.0 * ULP * fall_depth)
+                fall_error[axis] * fall_depth + fall[axis] * (fall_depth_error + (flips + 2.0 * ULP) * fall_depth)
             }),
         }
     }
@@ -267,11 +284,7 @@ fn check_visible(filter: Pcf, map: &DepthMap, case: &Case, view: &ViewUniforms, 
     let slope = f64::from(look.slope.abs().element_sum());
     let depth =
         bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
-    let rect = Vec4::from_array(view.rect);
-    let value = |look: &Lookup| {
-        let inside = look.uv.cmpge(Vec2::new(rect.x, rect.y)).all() && look.uv.cmple(Vec2::new(rect.z, rect.w)).all();
-        if inside { antumbra_filter(filter, map, look) } else { 1.0 }
-    };
+    let value = |look: &Lookup| antumbra_filter(filter, map, look);
     // The twin itself is the middle of the band.
     let twin = antumbra_visible(filter, view, map, position, normal);
     assert_eq!(twin.to_bits(), value(&look).to_bits(), "{case:?}");
@@ -419,6 +432,10 @@ fn fill(gpu: &Gpu, maps: &ShadowMaps, frame: &ShadowFrame, depth: &[f32]) {
     let mut pass = maps.caster_pass(&mut encoder, &frame.views[0], None);
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &group, &[]);
+    // The rim as well, which casters leave alone.
+    let whole = maps.depth_texture().size();
+    pass.set_viewport(0.0, 0.0, whole.width as f32, whole.height as f32, 0.0, 1.0);
+    pass.set_scissor_rect(0, 0, whole.width, whole.height);
     pass.draw(0..3, 0..1);
     drop(pass);
     gpu.queue().submit([encoder.finish()]);

@@ -218,8 +218,7 @@ fn layouts_agree() {
         ("v_from_render", offset_of!(ViewUniforms, v_from_render)),
         ("w_from_render", offset_of!(ViewUniforms, w_from_render)),
         ("depth_from_render", offset_of!(ViewUniforms, depth_from_render)),
-        ("texel_u", offset_of!(ViewUniforms, texel_u)),
-        ("texel_v", offset_of!(ViewUniforms, texel_v)),
+        ("texel", offset_of!(ViewUniforms, texel)),
         ("bias", offset_of!(ViewUniforms, bias)),
         ("rect", offset_of!(ViewUniforms, rect)),
     ];

@@ -69,19 +69,22 @@ pub struct Lookup {
 /// Twin of `antumbra_lookup`.
 #[must_use]
 pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach: f32, tap_reach: f32) -> Lookup {
-    let (texel_u, texel_v) = (Vec4::from_array(view.texel_u), Vec4::from_array(view.texel_v));
-    let [constant, grazing, lost_reach, manual] = view.bias;
-    let depth_from_render = Vec4::from_array(view.depth_from_render);
-    let fall = Vec2::new(texel_u.xyz().dot(normal), texel_v.xyz().dot(normal));
+    let [u, v, depth] = [view.u_from_render, view.v_from_render, view.depth_from_render].map(Vec4::from_array);
+    let [fall_u, fall_v, depth_squared, grazing] = view.texel;
+    let [constant, lost_reach, manual, _] = view.bias;
+    let climb = Vec2::new(u.xyz().dot(normal), v.xyz().dot(normal));
+    let fall = climb * Vec2::new(fall_u, fall_v);
     let step = fall.x.abs() + fall.y.abs();
-    let cosine = -depth_from_render.xyz().dot(normal) * texel_v.w;
+    let cosine = -depth.xyz().dot(normal);
     let inverse = 1.0 / cosine.abs().max(grazing);
     let along_normal = (reach + lost_reach) * step * (1.0 - cosine.abs() * inverse) + manual;
-    let depth_per_fall = if cosine >= 0.0 { texel_u.w } else { -texel_u.w } * inverse;
-    let at = (position + normal * along_normal).extend(1.0);
+    let signed = if cosine >= 0.0 { depth_squared } else { -depth_squared };
+    let depth_per_fall = signed * inverse;
+    let at = position.extend(1.0);
+    let lift = cosine * along_normal + (tap_reach + lost_reach) * step * depth_per_fall + constant;
     Lookup {
-        uv: Vec2::new(Vec4::from_array(view.u_from_render).dot(at), Vec4::from_array(view.v_from_render).dot(at)),
-        depth: depth_from_render.dot(at) - (tap_reach + lost_reach) * step * depth_per_fall - constant,
+        uv: Vec2::new(u.dot(at), v.dot(at)) + climb * along_normal,
+        depth: depth.dot(at) - lift,
         slope: fall * depth_per_fall,
     }
 }

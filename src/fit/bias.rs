@@ -9,11 +9,10 @@
 //! # References
 //! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|), bounded.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec4};
 
 use crate::error::{FitError, finite};
 use crate::frame::ViewUniforms;
-use crate::light_space::LightSpace;
 use crate::math::space::{Clip, Map, Render};
 
 /// How a receiver is kept from shadowing itself.
@@ -49,8 +48,6 @@ const LARGEST_MANUAL: f64 = 1e9;
 
 /// What a view's bias depends on.
 pub(crate) struct BiasInput<'a> {
-    /// Frame of the map.
-    pub(crate) light: &'a LightSpace,
     /// Size of a texel in (p, q), world units.
     pub(crate) texel: DVec2,
     /// Depth range of the map along the light, world units.
@@ -64,7 +61,7 @@ pub(crate) struct BiasInput<'a> {
 }
 
 impl Bias {
-    /// Writes the bias of an affine view into its uniforms.
+    /// Writes the bias of an affine view into its uniforms, whose rows are there already.
     pub(crate) fn write(self, input: &BiasInput, uniforms: &mut ViewUniforms) {
         // What rounding adds: to the texel that is looked up, and to the depth that is compared.
         let half_ulp = 0.5 * f64::from(f32::EPSILON);
@@ -72,12 +69,18 @@ impl Bias {
         let lost_texels =
             input.side * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))));
         let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
-        // A texel, as a step across the light that a plane may fall over; none for a manual bias.
+        // How far a plane falls over a texel for each unit of a row along its normal; not at all for a manual bias.
         let automatic = if self == Self::Automatic { 1.0 } else { 0.0 };
         let texel = input.texel * automatic;
-        let step = |axis: DVec3, size: f64, last: f64| (axis * size).extend(last).as_vec4().to_array();
-        uniforms.texel_u = step(input.light.p(), texel.x, 1.0 / input.depth_range);
-        uniforms.texel_v = step(input.light.q(), -texel.y, input.depth_range);
+        let per_row = |row: [f32; 4]| 1.0 / Vec4::from_array(row).truncate().as_dvec3().length();
+        let depth_per_unit = 1.0 / input.depth_range;
+        uniforms.texel = [
+            texel.x * per_row(uniforms.u_from_render),
+            texel.y * per_row(uniforms.v_from_render),
+            depth_per_unit * depth_per_unit,
+            f64::from(GRAZING_COSINE) * depth_per_unit,
+        ]
+        .map(narrowed);
         let (constant, offset) = match self {
             Self::Automatic => (0.0, 0.0),
             Self::Manual { depth_world, normal_texels } => {
@@ -87,7 +90,7 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_depth + constant, f64::from(GRAZING_COSINE), lost_reach, offset].map(narrowed);
+        uniforms.bias = [lost_depth + constant, lost_reach, offset, 0.0].map(narrowed);
     }
 }
 

@@ -135,7 +135,7 @@ impl Fitter<'_> {
         let clip_from_ray = Map::crop(low.extend(depth.near), high.extend(depth.far));
         let clip_from_render = clip_from_ray * light.ray_from_render();
         let mut uniforms = self.affine_uniforms(&clip_from_render);
-        self.bias.write(&self.bias_input(body, light, texel, depth, &clip_from_render), &mut uniforms);
+        self.bias.write(&self.bias_input(body, texel, depth, &clip_from_render), &mut uniforms);
         let (pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, texel.max_element());
         // Say what was cut.
         if window.size().min_element() < 3.0 * margin {
@@ -167,14 +167,13 @@ impl Fitter<'_> {
     fn bias_input<'b>(
         &self,
         body: &FocusBody,
-        light: &'b LightSpace,
         texel: DVec2,
         depth: DepthAlongLight,
         clip_from_render: &'b Map<Clip, Render>,
     ) -> BiasInput<'b> {
         let reach = body.vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
         let side = f64::from(self.input.map.side);
-        BiasInput { light, texel, depth_range: depth.far - depth.near, clip_from_render, reach, side }
+        BiasInput { texel, depth_range: depth.far - depth.near, clip_from_render, reach, side }
     }
 
     /// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.
