@@ -505,8 +505,7 @@ fn run(gpu: &Gpu, filter: Pcf, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome
     gpu.queue().submit([encoder.finish()]);
     read.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let outcomes = bytemuck::pod_collect_to_vec(&read.get_mapped_range(..).unwrap());
-    outcomes
+    bytemuck::pod_collect_to_vec(&read.get_mapped_range(..).unwrap())
 }
 
 fn storage(gpu: &Gpu, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

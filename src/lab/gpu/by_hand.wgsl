@@ -12,7 +12,7 @@ fn lit(position: vec3f) -> f32 {
 
 @fragment
 fn receive(surface: Solid) -> @location(0) f32 {
-    return lit(surface.position);
+    return shade(lit(surface.position), surface.normal);
 }
 
 @fragment
@@ -20,5 +20,5 @@ fn receive_cut(surface: Cut) -> @location(0) f32 {
     if is_hole(surface.uv) {
         discard;
     }
-    return lit(surface.position);
+    return shade(lit(surface.position), surface.normal);
 }

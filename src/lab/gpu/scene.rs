@@ -56,7 +56,11 @@ impl GpuScene {
     pub fn upload(gpu: &Gpu, model: &SceneModel, origin: DVec3) -> Result<Self, GpuFailure> {
         check(model)?;
         // Sort triangles by cut-out, then by object.
-        let objects = if model.objects.is_empty() { vec![0..model.triangles.len()] } else { model.objects.clone() };
+        let objects = if model.objects.is_empty() {
+            std::iter::once(0..model.triangles.len()).collect()
+        } else {
+            model.objects.clone()
+        };
         let cutout_of = |triangle: usize| model.triangle_cutout.get(triangle).copied().unwrap_or(SOLID);
         let mut order: Vec<(u32, usize, usize)> = objects
             .iter()
