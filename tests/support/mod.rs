@@ -1,4 +1,5 @@
 //! What several test files need: an adapter or a stated reason to do without, and a small scene.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small indices")]
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use antumbra::lab::gpu::Gpu;
