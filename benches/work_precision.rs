@@ -171,7 +171,8 @@ fn page(measured: &[Measured], meta: &[(&str, &str)], took: Duration) -> Result<
     let _ = writeln!(
         text,
         "Medians of {TURNS} ratios, each of neighbours in time: a caster pass against a depth pass with one matrix, a receiver pass \
-         (`fsm`, hardware 2×2, automatic bias) against one matrix, one comparison sample and a constant bias, all written by hand.\n"
+         (`fsm`, hardware 2×2, automatic bias) against one matrix, one comparison sample and a constant bias, all written by hand. \
+         Both receivers shade what arrives with Lambert's cosine, for which an engine has the normal at hand.\n"
     );
     let _ = writeln!(
         text,

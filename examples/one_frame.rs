@@ -31,8 +31,14 @@ fn main() -> Result<(), antumbra::FitError> {
         }
         let [small, large] = view.texel.world;
         println!("a texel is {small:.4} x {large:.4} units, at most {:.1} pixels", view.texel.pixels.max);
-        let behind = Aabb::new(DVec3::new(-2.0, 0.0, 300.0), DVec3::new(2.0, 4.0, 304.0));
-        println!("may a house far behind the camera cast into it? {}", view.cull.may_cast(&behind));
+        let tower = Aabb::new(DVec3::new(5.0, 0.0, 13.0), DVec3::new(9.0, 12.0, 17.0));
+        let house = Aabb::new(DVec3::new(-2.0, 0.0, 300.0), DVec3::new(2.0, 4.0, 304.0));
+        let casts = |bounds| view.cull.may_cast(bounds);
+        println!(
+            "may a tower behind the camera cast into it? {}; a house 300 units off? {}",
+            casts(&tower),
+            casts(&house)
+        );
     }
     println!("left out:");
     for cut in &frame.left_out {

@@ -62,10 +62,6 @@
 //! | angles, lengths | radians, world units |
 //! | precision | f64 in, f64 inside, narrowed to f32 once, relative to `origin` |
 #![cfg_attr(docsrs, feature(doc_cfg))]
-#![allow(
-    clippy::cast_possible_truncation,
-    reason = "narrowing to f32 and to small indices is what the last stage is for"
-)]
 
 mod aliasing;
 mod camera;

@@ -1,12 +1,4 @@
 //! The truth is held against what is known without it: published floors, exact shadows, all triangles tried one by one.
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    clippy::float_cmp,
-    clippy::many_single_char_names,
-    reason = "pixels and vertices of test pictures are small numbers, 0 and 1 are exact, and formulas keep their papers' letters"
-)]
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};

@@ -11,7 +11,7 @@ use antumbra::{Pcf, ShadowUniforms, ViewUniforms, WgslKey, gpu};
 /// Every key with its library: the fragments, without bindings.
 fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
     WgslKey::all().map(|key| {
-        let text: String = wgsl::library(key).join("\n");
+        let text = wgsl::library(key).join("\n");
         let shader = Shader::parse(&text).unwrap_or_else(|error| panic!("{key:?}: {error}"));
         (key, text, shader)
     })

@@ -36,23 +36,27 @@ pub(crate) struct Fitter<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Texels {
     /// Texels over the window, along a side.
-    inner: f64,
+    inner: u32,
     /// Texels of border on each side, the ring among them.
-    border: f64,
+    border: u32,
     /// Texels on each side that are never drawn: cleared to "lit", they answer for everything outside.
-    ring: f64,
+    ring: u32,
     /// Texels of border that the filter wants.
-    wanted: f64,
+    wanted: u32,
 }
 
 impl Texels {
     /// The filter reads up to its reach beyond a point that the bias has moved by up to √2 reaches across the light; one
     /// more texel absorbs snapping, and one is the ring. Maps that are too small for that have what they can.
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
-        let side = f64::from(side);
-        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() + 2.0;
-        let border = wanted.min(((side - 1.0) / 2.0).floor());
-        Self { inner: side - 2.0 * border, border, ring: border.min(1.0), wanted }
+        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2;
+        let border = wanted.min(side.saturating_sub(1) / 2);
+        Self { inner: side - 2 * border, border, ring: border.min(1), wanted }
+    }
+
+    /// Texels over the window, as a divisor.
+    fn inner(&self) -> f64 {
+        f64::from(self.inner)
     }
 }
 
@@ -91,7 +95,7 @@ impl Fitter<'_> {
     /// The window of the whole scene, which does not move with the camera.
     pub(crate) fn still(&self, whole: FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
         frame.leave_out(Part::Stabilise(0), why);
-        let window = snap::still(&self.around(&whole), self.texels.inner, self.input.origin);
+        let window = snap::still(&self.around(&whole), self.texels.inner(), self.input.origin);
         (whole, window)
     }
 
@@ -103,7 +107,7 @@ impl Fitter<'_> {
         let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else {
             return self.still(body, Why::AlreadyStill, frame);
         };
-        match snap::snapped(camera, far, &self.around(&whole), self.texels.inner, self.input.origin) {
+        match snap::snapped(camera, far, &self.around(&whole), self.texels.inner(), self.input.origin) {
             Ok(window) => (body, window),
             Err(why) => self.still(whole, why, frame),
         }
@@ -121,9 +125,9 @@ impl Fitter<'_> {
         let margin = rounding_margin(&body.vertices);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
         let light = &window.light;
-        let texel = window.size() / texels.inner;
-        let low = window.low - texel * (texels.border - texels.ring);
-        let high = window.high + texel * (texels.border - texels.ring);
+        let texel = window.size() / texels.inner();
+        let border = texel * f64::from(texels.border - texels.ring);
+        let (low, high) = (window.low - border, window.high + border);
         // Casters, and the depth that they and the receivers need.
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
         let cull = cull::prism(light, low, high, last + margin, input.origin);
@@ -142,10 +146,9 @@ impl Fitter<'_> {
             frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: window.size().min_element() });
         }
         if texels.border < texels.wanted {
-            let why = Why::MapTooSmall { border: texels.border as u32, wanted: texels.wanted as u32 };
-            frame.leave_out(Part::Border(0), why);
+            frame.leave_out(Part::Border(0), Why::MapTooSmall { border: texels.border, wanted: texels.wanted });
         }
-        let ring = texels.ring as u32;
+        let ring = texels.ring;
         let index = frame.views.len();
         let view = ShadowView {
             clip_from_render: clip_from_render.narrow(),
@@ -179,7 +182,7 @@ impl Fitter<'_> {
     /// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.
     fn affine_uniforms(&self, clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
         // The viewport's share of the map.
-        let ring = self.texels.ring / f64::from(self.input.map.side);
+        let ring = f64::from(self.texels.ring) / f64::from(self.input.map.side);
         let half = 0.5 - ring;
         let row = |row: usize, sign: f64| {
             let row = clip_from_render.row(row) * (half * sign);

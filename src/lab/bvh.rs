@@ -191,14 +191,12 @@ impl RayFrame {
     }
 
     /// Rounds a parameter up into the hierarchy's f32 units, so that no box with a nearer hit is passed over.
-    #[allow(clippy::cast_possible_truncation, reason = "the margin makes up for the rounding")]
     fn node_t(&self, t: f64) -> f32 {
         let exact = t * self.node_per_t - self.node_start;
         exact as f32 + BOX_MARGIN
     }
 
     /// Returns `t` and the corners' weights where the ray's line meets the triangle, edges included.
-    #[allow(clippy::many_single_char_names, reason = "the names of the paper")]
     fn intersect(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
         let [kx, ky, kz] = self.axes;
         let [a, b, c] = corners.map(|corner| {

@@ -189,7 +189,6 @@ fn describe(assignment: &Assignment, case: &Case, truth: &Truth) -> String {
 /// A picture of the area truth; sky is white, as in masks.
 fn png_of(area: &[f32], case: &Case) -> Result<Vec<u8>, String> {
     let [width, height] = case.viewport;
-    #[allow(clippy::cast_sign_loss, reason = "light is between 0 and 1")]
     let byte = |lit: &f32| (lit * f32::from(u8::MAX)).round() as u8;
     let bytes: Vec<u8> = area.iter().map(byte).collect();
     encode_png(&bytes, width, height, ExtendedColorType::L8)

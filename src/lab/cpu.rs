@@ -5,7 +5,6 @@
 //! - S. Bu, J. Bustos, S. L. Tan, *Implementation and assessment of software-based shadow mapping techniques*: rasterise from
 //!   the light, look up by projecting each pixel into light space (its equations 1 and 2). Erratum GZ-1: its constant bias is
 //!   a threshold, not a low-pass filter; here the bias is the library's own.
-#![allow(clippy::cast_sign_loss, reason = "a visibility in [0, 1] becomes a byte")]
 
 use std::time::Instant;
 

@@ -22,14 +22,6 @@
 //! through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that darkens along the same
 //! direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
 
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    clippy::float_cmp,
-    reason = "places in a picture are below 2^28, colours are rounded on purpose, the centre truth is exactly 0 or 1"
-)]
-
 use super::truth::{JOINS_BELOW, JOINS_RIGHT, Truth};
 
 /// How near to an edge pixel, in pixels along both axes, a wrong pixel counts as an edge's: an edge displaced by up to

@@ -94,11 +94,6 @@ impl Cutout {
     /// Texel centres lie at half-integers, so the mask agrees with a GPU sampler in repeat mode at level 0. A mask
     /// without texels is solid.
     #[must_use]
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "remainders are whole numbers in 0..size"
-    )]
     pub fn alpha(&self, uv: DVec2) -> f64 {
         if self.width == 0 || self.height == 0 || !uv.is_finite() {
             return 1.0;

@@ -1,12 +1,6 @@
 //! What the built-in scenes are made of: a mesh under construction, simple solids, and reproducible random numbers.
 //!
 //! Every solid is closed and runs counter-clockwise seen from outside. Lengths are in the scene's units.
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "counts of a built-in scene stay far below 2^32"
-)]
 
 use std::f64::consts::TAU;
 

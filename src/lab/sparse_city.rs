@@ -5,7 +5,6 @@
 //!
 //! 1 unit = 1 m. Blocks of 170 m around the origin hold two to five buildings or nothing; the figure, a robot 6 m tall,
 //! stands on the plaza at [`FIGURE`].
-#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few floors per building")]
 
 use glam::{DMat3, DVec2, DVec3};
 

@@ -3,12 +3,6 @@
 //! and the planes 1 and 50; the geometry is this project's own).
 //!
 //! 1 unit = 1 m. The trees stand on the x axis; a rail fence runs behind them, stones, mushrooms and grass around them.
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "counts of a built-in scene stay far below 2^32"
-)]
 
 use std::f64::consts::{PI, TAU};
 

@@ -14,13 +14,6 @@
 //!
 //! The shadow distance of a case is a limit of techniques, not of light: truth ignores it.
 
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "pixel counts are far below 2^24 per sample set, and pictures are stored in f32 on purpose"
-)]
-
 mod cache;
 
 use glam::DVec3;

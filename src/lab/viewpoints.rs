@@ -2,7 +2,6 @@
 //!
 //! Each scene has the cases that separate techniques: the sun across the view (warps at their best), the sun ahead
 //! (duelling frusta, warps of no use), a close-up (resolution), and an overview with the sun behind.
-#![allow(clippy::cast_precision_loss, reason = "frame numbers stay far below 2^52")]
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 

@@ -1,5 +1,4 @@
 //! What several test files need: an adapter or a stated reason to do without, and a small scene.
-#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small indices")]
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use antumbra::lab::gpu::Gpu;
@@ -10,7 +9,12 @@ use glam::{DVec2, DVec3, UVec2};
 /// The adapter. Without one the test fails, unless `ANTUMBRA_NO_GPU=1` says that none is to be expected.
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::new() {
-        Ok(gpu) => Some(gpu),
+        Ok(gpu) => {
+            // `tests/run` counts these lines.
+            let test = std::thread::current().name().unwrap_or("test").to_owned();
+            println!("GPU test: {test} on {}", gpu.adapter());
+            Some(gpu)
+        }
         Err(error) if std::env::var("ANTUMBRA_NO_GPU").as_deref() == Ok("1") => {
             eprintln!("SKIPPED, because ANTUMBRA_NO_GPU=1: {error}");
             None

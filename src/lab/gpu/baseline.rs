@@ -13,9 +13,8 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The library's passes beside passes written by hand, drawn turn by turn in the same picture.
 ///
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
-/// sample and a constant bias along the normal, on the same vertex stage. Both draw the same triangles into targets of the
-/// same size. Every repetition times all four, in alternating order, and gives two ratios; the medians of those are robust
-/// against other work on the machine.
+/// sample and a constant bias. Both draw the same triangles into targets of the same size. Every repetition times all
+/// four, in alternating order, and gives two ratios; the medians of those are robust against other work on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
     /// Library's caster pass, median, milliseconds.
@@ -54,10 +53,10 @@ impl Renderer {
         let stopwatch = Stopwatch::new(gpu);
         stopwatch.time(|encoder, _| shot.depth_pass(encoder))?;
         let mut runs = Runs::default();
-        self.turn(&stopwatch, &shot, &by_hand, maps, true)?;
+        Self::turn(&stopwatch, &shot, &by_hand, maps, true)?;
         // Take turns.
         for repetition in 0..repetitions.max(1) {
-            runs.push(self.turn(&stopwatch, &shot, &by_hand, maps, repetition % 2 == 0)?);
+            runs.push(Self::turn(&stopwatch, &shot, &by_hand, maps, repetition % 2 == 0)?);
         }
         let clock = stopwatch.clock();
         Ok(if frame.views.is_empty() { Runs::default().summary(clock) } else { runs.summary(clock) })
@@ -65,7 +64,6 @@ impl Renderer {
 
     /// One repetition: library and yardstick, casters and receivers, in milliseconds.
     fn turn(
-        &self,
         stopwatch: &Stopwatch,
         shot: &Shot,
         by_hand: &ByHand,
@@ -82,7 +80,7 @@ impl Renderer {
             } else {
                 times[0] = stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?;
                 times[2] = stopwatch.time(|encoder, stamps| {
-                    shot.receiver_pass(encoder, stamps, self.receivers(), maps.bind_group());
+                    shot.receiver_pass(encoder, stamps, &by_hand.library, maps.bind_group());
                 })?;
             }
         }
@@ -128,6 +126,8 @@ struct ByHand {
     caster_groups: Vec<wgpu::BindGroup>,
     map: wgpu::TextureView,
     receivers: Pair,
+    /// The library's receivers, shaded in the same way.
+    library: Pair,
     receiver_group: wgpu::BindGroup,
 }
 
@@ -150,12 +150,13 @@ impl ByHand {
         let casters = pipelines::caster_pair(gpu, "casters by hand", &text, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
         // Receivers: the first view's map.
-        let text = [pipelines::STAGE, include_str!("by_hand.wgsl")].concat();
+        let text = [pipelines::STAGE, pipelines::SHADE, include_str!("by_hand.wgsl")].concat();
         let layout = receiver_layout(gpu);
         let receivers = pipelines::receiver_pair(gpu, "receivers by hand", &text, &layout);
         let matrix = shot.views().first().map_or(Mat4::IDENTITY, texture_from_render);
         let receiver_group = receiver_group(gpu, &layout, &map, &matrix);
-        Self { casters, caster_groups, map, receivers, receiver_group }
+        let library = pipelines::shaded_receivers(gpu, renderer.key());
+        Self { casters, caster_groups, map, receivers, library, receiver_group }
     }
 
     fn caster_passes(&self, encoder: &mut wgpu::CommandEncoder, stamps: Stamps, shot: &Shot) {

@@ -115,7 +115,6 @@ impl<'a> Stopwatch<'a> {
         let stamp = |index: usize| u64::from_le_bytes(core::array::from_fn(|byte| bytes[8 * index + byte]));
         let ticks = stamp(1).saturating_sub(stamp(0));
         // 2^53 ticks are months: exact.
-        #[allow(clippy::cast_precision_loss, reason = "differences of timestamps are small")]
         let nanoseconds = ticks as f64 * f64::from(self.gpu.queue().get_timestamp_period());
         Ok(nanoseconds * 1e-6)
     }

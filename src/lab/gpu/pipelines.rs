@@ -74,8 +74,19 @@ pub(super) fn camera_depth(gpu: &Gpu) -> Pair {
 
 /// Receivers that call `antumbra_visibility`.
 pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
-    let library = wgsl::module(key, Bindings { group: 1, first: 0 });
-    let text = [library.as_str(), STAGE, include_str!("receivers.wgsl")].concat();
+    receivers_with(gpu, key, &[STAGE, include_str!("receivers.wgsl")])
+}
+
+/// The same, shaded as an engine would: what the yardstick is compared with.
+pub(super) fn shaded_receivers(gpu: &Gpu, key: WgslKey) -> Pair {
+    receivers_with(gpu, key, &[STAGE, SHADE, include_str!("receivers_shaded.wgsl")])
+}
+
+/// Shading, for text beside [`STAGE`].
+pub(super) const SHADE: &str = include_str!("shade.wgsl");
+
+fn receivers_with(gpu: &Gpu, key: WgslKey, parts: &[&str]) -> Pair {
+    let text = [wgsl::module(key, Bindings { group: 1, first: 0 }), parts.concat()].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("maps"),
         entries: &gpu::layout_entries(key, 0, wgpu::ShaderStages::FRAGMENT),

@@ -228,11 +228,6 @@ impl Renderer {
     pub(super) fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
     }
-
-    /// The receivers' pipelines.
-    pub(super) fn receivers(&self) -> &Pair {
-        &self.receivers
-    }
 }
 
 /// Every view of a frame knows the origin it was fitted with.

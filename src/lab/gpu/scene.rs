@@ -55,9 +55,12 @@ impl GpuScene {
     /// An index of the model that points nowhere, a mask of the wrong size, or more than the device can hold.
     pub fn upload(gpu: &Gpu, model: &SceneModel, origin: DVec3) -> Result<Self, GpuFailure> {
         check(model)?;
-        // Sort triangles by cut-out, then by object; a model without objects is one.
-        let all = 0..model.triangles.len();
-        let objects = if model.objects.is_empty() { std::slice::from_ref(&all) } else { &model.objects };
+        // Sort triangles by cut-out, then by object.
+        let objects = if model.objects.is_empty() {
+            std::iter::once(0..model.triangles.len()).collect()
+        } else {
+            model.objects.clone()
+        };
         let cutout_of = |triangle: usize| model.triangle_cutout.get(triangle).copied().unwrap_or(SOLID);
         let mut order: Vec<(u32, usize, usize)> = objects
             .iter()

@@ -1,5 +1,4 @@
 //! Masks made by hand over truths made by hand.
-#![allow(clippy::float_cmp, reason = "the values are sums of few binary fractions")]
 
 use super::*;
 
