@@ -1,0 +1,69 @@
+//! What does not fit together: device, maps and frame.
+
+use core::fmt;
+
+use glam::UVec4;
+
+use crate::frame::WgslKey;
+
+/// What does not fit together. One line each: what is there, and what was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// The frame is for another shader text than the maps were made for.
+    Key {
+        /// The key that the maps were made for.
+        expected: WgslKey,
+        /// The frame's key.
+        actual: WgslKey,
+    },
+    /// The maps would be larger than the device allows, or empty.
+    Side {
+        /// The side that was asked for, texels.
+        side: u32,
+        /// The device's largest side, texels.
+        largest: u32,
+    },
+    /// The frame has more views than the maps have room for.
+    Views {
+        /// Views of the frame.
+        views: usize,
+        /// Most views that the maps hold.
+        most: usize,
+    },
+    /// A view's rectangle or layer lies outside the maps: they were made for a smaller budget than the frame.
+    Viewport {
+        /// Number of the view.
+        view: usize,
+        /// Its x, y, width and height, texels.
+        viewport: UVec4,
+        /// Its layer.
+        layer: u32,
+        /// Side of the maps, texels.
+        side: u32,
+    },
+}
+
+impl fmt::Display for GpuError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Key { expected, actual } => {
+                write!(f, "frame.wgsl is {actual:?}; legal: the key of these maps, {expected:?}")
+            }
+            Self::Side { side, largest } => {
+                write!(f, "map.side is {side}; legal: 1 to {largest} texels on this device")
+            }
+            Self::Views { views, most } => {
+                write!(f, "frame.views has {views} views; legal: at most {most} in these maps")
+            }
+            Self::Viewport { view, viewport: at, layer, side } => write!(
+                f,
+                "frame.views[{view}].viewport is {}x{} texels at ({}, {}) of layer {layer}; legal: inside layer 0 of \
+                 {side}x{side} texels",
+                at.z, at.w, at.x, at.y
+            ),
+        }
+    }
+}
+
+impl core::error::Error for GpuError {}
