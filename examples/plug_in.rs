@@ -2,7 +2,6 @@
 //!
 //! `cargo run --example plug_in`. Read it from top to bottom; what concerns shadows is numbered 1 to 6. The engine keeps
 //! its own device, vertex format, pipelines, passes and reversed-depth camera.
-#![allow(clippy::cast_possible_truncation, reason = "counts of vertices and sizes of structs are small")]
 
 use std::error::Error;
 use std::f32::consts::{PI, TAU};

@@ -6,7 +6,6 @@
 //!   lies between the twin's values on both sides of the doubt. Samplers may keep 8 bits of the place between texels,
 //!   rounded (as the twin does) or cut, or all of them: that changes a weight by at most 1/256 along each axis, and so
 //!   any mean of taps by at most 2/256. (llvmpipe keeps all bits, half a step from the twin: it stays below 1/256.)
-#![allow(clippy::cast_possible_truncation, reason = "small indices and sizes, and the f32 that shaders compute in")]
 
 mod support;
 

@@ -13,8 +13,10 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The library's passes beside passes written by hand, drawn turn by turn in the same picture.
 ///
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
-/// sample and a constant bias. Both draw the same triangles into targets of the same size. Every repetition times all
-/// four, in alternating order, and gives two ratios; the medians of those are robust against other work on the machine.
+/// sample and a constant bias. Both draw the same triangles into targets of the same size, and both receivers shade what
+/// arrives with Lambert's cosine: without a use for the normal a driver takes it out of the vertex stage, and the race would
+/// compare vertex stages. Every repetition times all four, in alternating order, and gives two ratios; the medians of those
+/// are robust against other work on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
     /// Library's caster pass, median, milliseconds.
