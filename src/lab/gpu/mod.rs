@@ -122,12 +122,14 @@ impl Gpu {
         let unavailable = |reason: &dyn fmt::Display| GpuUnavailable { reason: reason.to_string() };
         // Take the adapter that the environment names, else the fastest.
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None)).or_else(|_| {
+        let adapter = if std::env::var_os("WGPU_ADAPTER_NAME").is_some() {
+            pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None))
+        } else {
             pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
                 power_preference: wgpu::PowerPreference::HighPerformance,
                 ..Default::default()
             }))
-        });
+        };
         let adapter = adapter.map_err(|error| unavailable(&error))?;
         // Everything it can hold, and timestamps if it has them.
         let descriptor = wgpu::DeviceDescriptor {
