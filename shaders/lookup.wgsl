@@ -17,13 +17,13 @@ fn antumbra_lookup(view: AntumbraView, position: vec3f, normal: vec3f, reach: f3
     // Along the light where that is short, along the normal for the rest. Cosines are in depth per world unit.
     let cosine = -dot(view.depth_from_render.xyz, normal);
     let inverse = 1.0 / max(abs(cosine), view.texel.w);
-    let along_normal = (reach + view.bias.y) * step * (1.0 - abs(cosine) * inverse) + view.bias.z;
+    let along_normal = (reach + view.bias.x) * step * (1.0 - abs(cosine) * inverse) + view.bias.y;
     // The side that is turned away is pushed off the light instead: a sheet shades its own back.
     let depth_per_fall = select(-view.texel.z, view.texel.z, cosine >= 0.0) * inverse;
     let at = vec4f(position, 1.0);
     var look: AntumbraLookup;
     look.uv = vec2f(dot(view.u_from_render, at), dot(view.v_from_render, at)) + climb * along_normal;
-    let lift = cosine * along_normal + (tap_reach + view.bias.y) * step * depth_per_fall + view.bias.x;
+    let lift = cosine * along_normal + (tap_reach + view.bias.x) * step * depth_per_fall;
     look.depth = dot(view.depth_from_render, at) - lift;
     look.slope = fall * depth_per_fall;
     return look;

@@ -211,14 +211,13 @@ pub struct ViewUniforms {
     pub v_from_render: [f32; 4],
     /// The divisor w: a row; (0, 0, 0, 1) when the map is affine.
     pub w_from_render: [f32; 4],
-    /// Linear light depth in [0, 1]: a row.
+    /// Linear light depth in [0, 1], less the constant bias: a row.
     pub depth_from_render: [f32; 4],
     /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each unit of
     /// `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along the light.
     /// w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
     pub texel: [f32; 4],
-    /// x: constant bias, depth units. y: texels that rounding adds to the reach of a filter. z: manual normal offset, world
-    /// units. w: 0.
+    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z, w: 0.
     pub bias: [f32; 4],
     /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
     /// that lookups beyond the window read lit.

@@ -67,6 +67,8 @@ pub enum Why {
     /// The frustum has no end, so that no window of constant size holds it: the map is fitted to the whole scene. A
     /// `scene.visible_depth` with an end gives it one.
     EndlessFrustum,
+    /// So far from the world's origin f64 does not tell the parts of a texel apart: nothing to snap to.
+    BeyondPrecision,
     /// The map is too small for the border that its filter wants: near its rim the filter reads outside.
     MapTooSmall {
         /// Texels of border on each side.
@@ -117,6 +119,7 @@ impl fmt::Display for Why {
                 write!(f, "focusing: the view covers {:.0} % of the scene, whose map can be kept", 100.0 * share)
             }
             Self::EndlessFrustum => write!(f, "the frustum has no end: fitted to the scene (give visible_depth)"),
+            Self::BeyondPrecision => write!(f, "too far from the world's origin for texels of this size: not snapped"),
             Self::MapTooSmall { border, wanted } => {
                 write!(f, "the map is too small: {border} texels, {wanted} wanted by the filter")
             }

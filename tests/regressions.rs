@@ -232,3 +232,18 @@ fn a_tower_behind_the_camera_casts() {
     assert!(frame.views[0].cull.may_cast(&tower));
     assert!(!frame.views[0].cull.may_cast(&aside));
 }
+
+/// A point 10,000 km out, snapped by a texel of 1e-12: the grid rounded to whole steps of f64, and the window missed the point.
+#[test]
+fn still_windows_hold_points_far_out() {
+    let place = DVec3::new(3e6, 8e6, -5e6);
+    let remix = Remix { stabilise: Stabilise::SnapTexels, ..techniques::ssm() };
+    for side in [1, 16, 1024] {
+        let mut input = input(Scene::within(Aabb::new(place, place)));
+        input.map = MapBudget::one(side);
+        input.origin = place + 1e-3;
+        let frame = remix.fit(&input).unwrap();
+        let at = frame.views[0].clip_from_render * (place - input.origin).as_vec3().extend(1.0);
+        assert!(at.truncate().abs().max_element() <= 1.0, "{at}");
+    }
+}

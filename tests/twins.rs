@@ -151,7 +151,7 @@ impl LookupBound {
         };
         let n = normal.to_array().map(f64::from);
         let p = position.to_array().map(f64::from);
-        let [constant, lost, manual, _] = view.bias.map(f64::from);
+        let [lost, manual, ..] = view.bias.map(f64::from);
         let [fall_u, fall_v, depth_squared, grazing] = view.texel.map(f64::from);
         // The climb, the fall, its sum, and the cosine.
         let climb = [view.u_from_render, view.v_from_render].map(|row| magnitude(row, n, 0.0));
@@ -183,7 +183,7 @@ impl LookupBound {
         let fall_depth_error = depth_squared * (inverse_error + 2.0 * ULP * inverse);
         let tap_reach = filter.tap_reach() + lost;
         let tap = tap_reach * (step_error * fall_depth + step * (fall_depth_error + (flips + 6.0 * ULP) * fall_depth));
-        let sum = magnitude(view.depth_from_render, p, 1.0) + cosine * along + tap_reach * step * fall_depth + constant;
+        let sum = magnitude(view.depth_from_render, p, 1.0) + cosine * along + tap_reach * step * fall_depth;
         Self {
             uv: [
                 uv(0, row(view.u_from_render), magnitude(view.u_from_render, p, 1.0)),

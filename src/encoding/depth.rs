@@ -71,7 +71,7 @@ pub struct Lookup {
 pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach: f32, tap_reach: f32) -> Lookup {
     let [u, v, depth] = [view.u_from_render, view.v_from_render, view.depth_from_render].map(Vec4::from_array);
     let [fall_u, fall_v, depth_squared, grazing] = view.texel;
-    let [constant, lost_reach, manual, _] = view.bias;
+    let [lost_reach, manual, ..] = view.bias;
     let climb = Vec2::new(u.xyz().dot(normal), v.xyz().dot(normal));
     let fall = climb * Vec2::new(fall_u, fall_v);
     let step = fall.x.abs() + fall.y.abs();
@@ -81,7 +81,7 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
     let signed = if cosine >= 0.0 { depth_squared } else { -depth_squared };
     let depth_per_fall = signed * inverse;
     let at = position.extend(1.0);
-    let lift = cosine * along_normal + (tap_reach + lost_reach) * step * depth_per_fall + constant;
+    let lift = cosine * along_normal + (tap_reach + lost_reach) * step * depth_per_fall;
     Lookup {
         uv: Vec2::new(u.dot(at), v.dot(at)) + climb * along_normal,
         depth: depth.dot(at) - lift,

@@ -90,7 +90,10 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_depth + constant, lost_reach, offset, 0.0].map(narrowed);
+        uniforms.bias = [lost_reach, offset, 0.0, 0.0].map(narrowed);
+        // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
+        let depth = input.clip_from_render.row(2);
+        uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
     }
 }
 

@@ -17,8 +17,8 @@ const STEPS_PER_OCTAVE: f64 = 16.0;
 /// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it looks, placed on a
 /// world-fixed grid of texels. `texels` is the number of texels over its side.
 ///
-/// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, or the scene is no larger.
-/// The grid holds to 1/1000 texel for eyes up to 1e11 texels from the world's origin, where f64 ends.
+/// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, the scene is no larger, or f64
+/// does not resolve texels so far from the world's origin.
 pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, origin: DVec3) -> Result<Window, Why> {
     let (centre_depth, radius) = bounding_sphere(&camera.projection, far);
     if !radius.is_finite() {
@@ -37,6 +37,9 @@ pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, or
     let light = scene.light;
     let centre = camera.eye() + camera.forward() * centre_depth;
     let grid = light.ray(origin).truncate();
+    if !resolved(DVec2::splat(texel), grid) {
+        return Err(Why::BeyondPrecision);
+    }
     let corner = light.ray(centre).truncate() - DVec2::splat(radius);
     let low = (corner / texel).floor() * texel - grid;
     Ok(Window { light, low, high: low + side })
@@ -50,8 +53,20 @@ pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
     }
     let texel = DVec2::new(quantised_up(size.x), quantised_up(size.y)) / (texels - 1.0);
     let grid = window.light.ray(origin).truncate();
+    if !resolved(texel, grid) {
+        return *window;
+    }
     let low = ((window.low + grid) / texel).floor() * texel - grid;
     Window { light: window.light, low, high: low + texel * texels }
+}
+
+/// Steps of f64 that a texel must have at its place in the world, so that snapping holds to 1/1000 of it. Fewer let maps miss
+/// what they are for; more give snapping up nearer to the world's origin.
+const STEPS_PER_TEXEL: f64 = 1024.0;
+
+/// Whether f64 tells parts of a texel apart as far out as `grid`, the origin of render space across the light.
+fn resolved(texel: DVec2, grid: DVec2) -> bool {
+    texel.cmpge(grid.abs() * (f64::EPSILON * STEPS_PER_TEXEL)).all()
 }
 
 /// The least power of `2^(1/16)` that is not below a size; 0 stays 0.
