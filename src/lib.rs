@@ -82,7 +82,7 @@ mod technique;
 pub mod techniques;
 #[cfg(feature = "naga")]
 pub mod transpile;
-mod warp;
+pub mod warp;
 pub mod wgsl;
 
 #[cfg(feature = "lab")]

@@ -1,5 +1,6 @@
 //! Mathematics without an opinion about shadows: typed spaces, exact convex clipping, smallest rectangles.
 
 pub(crate) mod convex;
+pub mod homography;
 pub(crate) mod rectangle;
 pub(crate) mod space;

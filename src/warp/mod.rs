@@ -1,3 +1,5 @@
-//! How ray coordinates are laid out on a map.
+//! How ray coordinates are laid out on a map: one homography, and the strengths that the papers choose for it.
 
+pub use crate::math::homography;
+pub mod trapezoid;
 pub(crate) mod uniform;
