@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use antumbra::lab::case::Case;
 use antumbra::lab::cli::{BackendName, encode_png, fail, map_size, technique};
 use antumbra::lab::experiment::{Backend, Shot, Studio, stage_names};
-use antumbra::lab::files::write_whole;
+use antumbra::lab::files::{writable, write_whole};
 use antumbra::lab::subject::{Setting, Subject};
 use clap::Parser;
 use serde_json::json;
@@ -60,6 +60,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let case = Case::load(&arguments.case).map_err(|error| error.to_string())?;
     let source = case.scene_source().map_err(|error| error.to_string())?;
     let subject = Subject::load(&source).map_err(|error| error.to_string())?;
+    writable(&arguments.out)?;
+    arguments.timing.as_deref().map_or(Ok(()), writable)?;
     let (mut backend, why_not) = Backend::open(arguments.backend.into())?;
     // Draw.
     let shot = Studio::new(&mut backend, &subject, Setting::of(&case))

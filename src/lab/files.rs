@@ -3,26 +3,39 @@
 use std::io::Write;
 use std::path::Path;
 
+use tempfile::NamedTempFile;
+
+/// Checks that a file can be written, and leaves no trace.
+///
+/// # Errors
+/// One line that names the path and what is legal.
+pub fn writable(path: &Path) -> Result<(), String> {
+    beside(path).map(drop)
+}
+
 /// Writes a file as a whole: into a temporary file beside it, which then takes its place.
 ///
 /// # Errors
 /// One line that names the path and what is legal.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), String> {
-    let problem = |error: &dyn std::fmt::Display| {
-        format!(
-            "cannot write {} ({error}); legal: a file in a folder that exists and may be written to",
-            path.display()
-        )
-    };
+    let mut file = beside(path)?;
+    file.write_all(content).map_err(|error| problem(path, &error))?;
+    file.persist(path).map_err(|error| problem(path, &error.error))?;
+    Ok(())
+}
+
+/// A temporary file in the folder that a path is in.
+fn beside(path: &Path) -> Result<NamedTempFile, String> {
     if path.is_dir() {
-        return Err(problem(&"it is a folder"));
+        return Err(problem(path, &"it is a folder"));
     }
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(|error| problem(&error))?;
-    file.write_all(content).map_err(|error| problem(&error))?;
-    file.persist(path).map_err(|error| problem(&error.error))?;
-    Ok(())
+    NamedTempFile::new_in(folder).map_err(|error| problem(path, &error))
+}
+
+fn problem(path: &Path, reason: &dyn std::fmt::Display) -> String {
+    format!("cannot write {} ({reason}); legal: a file in a folder that exists and may be written to", path.display())
 }
