@@ -33,9 +33,19 @@ fn beside(path: &Path) -> Result<NamedTempFile, String> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    NamedTempFile::new_in(folder).map_err(|error| problem(path, &error))
+    open_beside(folder).map_err(|error| problem(path, &error))
 }
 
 fn problem(path: &Path, reason: &dyn std::fmt::Display) -> String {
     format!("cannot write {} ({reason}); legal: a file in a folder that exists and may be written to", path.display())
+}
+
+/// Opens a temporary file with the rights that an ordinary new file gets.
+pub(crate) fn open_beside(folder: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".antumbra-");
+    // Temporary files are private by default; a picture or a report is meant to be shared. The umask still applies.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use super::ReportError;
+use crate::lab::files::open_beside;
 
 /// A file that is complete but does not stand at its place yet; dropped, it leaves nothing behind.
 pub(super) struct Staged {
@@ -48,14 +49,4 @@ pub(super) fn folder(path: &Path) -> Result<(), ReportError> {
         return Err(ReportError::NotAFolder { path: path.to_owned() });
     }
     fs::create_dir_all(path).map_err(|source| ReportError::Unwritable { path: path.to_owned(), source })
-}
-
-/// Opens a temporary file with the rights that an ordinary new file gets.
-fn open_beside(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".antumbra-");
-    // Temporary files are private by default; a report is meant to be shared. The umask still applies.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
 }
