@@ -247,3 +247,26 @@ fn still_windows_hold_points_far_out() {
         assert!(at.truncate().abs().max_element() <= 1.0, "{at}");
     }
 }
+
+/// A caster 48,000 km from the origin of the world and a few nanometres beside its window: culled, because world positions in f64
+/// are themselves only good to seven nanometres there.
+#[test]
+fn casters_at_the_rim_far_out_are_kept() {
+    let receiver = DVec3::new(-38_113_182.842_577_58, -29_255_358.730_032_906, 25_475_893.878_540_173);
+    let travel = DVec3::new(-0.096_357_121_228_578_52, 0.808_199_618_065_447_2, -0.580_972_187_412_966_1);
+    let casters = Aabb::new(
+        DVec3::new(-38_113_183.843_257_58, -29_255_722.196_625_39, 25_475_892.878_540_173),
+        DVec3::new(-38_113_181.843_257_58, -29_254_995.263_440_423, 25_475_894.878_540_173),
+    );
+    let mut input = input(Scene { casters, receivers: Aabb::new(receiver, receiver), ..Scene::within(casters) });
+    input.light = Light::Directional { travel };
+    input.map = MapBudget::one(16_384);
+    input.origin = DVec3::new(-38_113_182.847_599_69, -29_255_358.731_383_026, 25_475_893.876_291_063);
+    for stabilise in [Stabilise::Off, Stabilise::SnapTexels] {
+        let frame = Remix { stabilise, ..techniques::ssm() }.fit(&input).unwrap();
+        for step in 0..100 {
+            let caster = receiver - travel * f64::from(step) * 0.017;
+            assert!(frame.views[0].cull.may_cast(&Aabb::new(caster, caster)), "{stabilise:?} {caster}");
+        }
+    }
+}

@@ -47,7 +47,7 @@ impl DepthAlongLight {
 
     /// Widened at both ends by what f32 loses of positions as far out as these depths and `margin`'s.
     pub(crate) fn widened(self, margin: f64) -> Self {
-        let margin = margin.max(rounding(self.near.abs().max(self.far.abs())));
+        let margin = margin.max(rounding(self.near.abs().max(self.far.abs()), DVec3::ZERO));
         Self { near: self.near - margin, far: self.far + margin }
     }
 }
@@ -79,16 +79,24 @@ const LEAST_SLOPE: f64 = 1e-3;
 /// texels only where positions are as coarse as texels.
 const POSITION_ROUNDINGS: f64 = 4.0;
 
-/// What f32 loses of coordinates as large as `reach`, world units. Never zero, so that nothing divides by zero.
-pub(crate) fn rounding(reach: f64) -> f64 {
-    (POSITION_ROUNDINGS * f64::from(f32::EPSILON) * reach).max(LEAST_MARGIN)
+/// What f32 loses of coordinates as large as `reach`, and f64 of world coordinates as large as `origin`'s, world units. Never
+/// zero, so that nothing divides by zero.
+pub(crate) fn rounding(reach: f64, origin: DVec3) -> f64 {
+    let narrowed = POSITION_ROUNDINGS * f64::from(f32::EPSILON) * reach;
+    let world = WORLD_ROUNDINGS * f64::EPSILON * origin.abs().max_element();
+    (narrowed + world).max(LEAST_MARGIN)
 }
+
+/// Roundings of a world position in f64 before `origin` is subtracted: its own, and those of whoever computed it (a
+/// product and a sum on each of three axes). Fewer can miss a caster that stands exactly at a window's rim; more costs
+/// texels only where f64 is as coarse as they are.
+const WORLD_ROUNDINGS: f64 = 8.0;
 
 /// A body that is one point at the origin of render space still gets a map, of this size in world units: its texels'
 /// squares are far from f32's underflow.
 const LEAST_MARGIN: f64 = 1e-12;
 
 /// How far a map must reach beyond `vertices` so that f32 positions land inside it, world units.
-pub(crate) fn rounding_margin(vertices: &[DVec3]) -> f64 {
-    rounding(vertices.iter().fold(0.0, |reach: f64, vertex| reach.max(vertex.abs().max_element())))
+pub(crate) fn rounding_margin(vertices: &[DVec3], origin: DVec3) -> f64 {
+    rounding(vertices.iter().fold(0.0, |reach: f64, vertex| reach.max(vertex.abs().max_element())), origin)
 }

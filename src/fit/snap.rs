@@ -26,7 +26,9 @@ pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, or
     }
     // What f32 loses so far out, in powers of two: the size of a texel must not follow every step of the eye.
     let reach = (camera.eye() - origin).length() + centre_depth.abs() + radius;
-    let radius = quantised_up(radius) + rounding(reach.log2().ceil().exp2());
+    let radius = quantised_up(radius)
+        + rounding(reach.log2().ceil().exp2(), DVec3::ZERO)
+        + rounding(0.0, quantised_origin(origin));
     // One texel more than the sphere, so that snapping cannot cut it.
     let texel = 2.0 * radius / (texels - 1.0);
     let side = texel * texels;
@@ -58,6 +60,11 @@ pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
     }
     let low = ((window.low + grid) / texel).floor() * texel - grid;
     Window { light: window.light, low, high: low + texel * texels }
+}
+
+/// The origin's distance from the world's, up to the next power of two: it may follow the eye, texels must not.
+fn quantised_origin(origin: DVec3) -> DVec3 {
+    DVec3::splat(origin.length().log2().ceil().exp2())
 }
 
 /// Steps of f64 that a texel must have at its place in the world, so that snapping holds to 1/1000 of it. Fewer let maps miss

@@ -67,7 +67,7 @@ impl Fitter<'_> {
     /// The window of least area around a body.
     pub(crate) fn tight(&self, body: FocusBody) -> Layout {
         let window = Window::least_area(LightSpace::fixed(self.travel), &body.vertices);
-        let window = window.grown(rounding_margin(&body.vertices));
+        let window = window.grown(rounding_margin(&body.vertices, self.input.origin));
         (body, window)
     }
 
@@ -116,13 +116,13 @@ impl Fitter<'_> {
     /// The window around a body in the fixed frame of the light.
     fn around(&self, body: &FocusBody) -> Window {
         let window = Window::around(LightSpace::fixed(self.travel), &body.vertices);
-        window.grown(rounding_margin(&body.vertices))
+        window.grown(rounding_margin(&body.vertices, self.input.origin))
     }
 
     /// From a window to a view and its uniforms, appended to the frame.
     pub(crate) fn view(&self, (body, window): &Layout, frame: &mut ShadowFrame) {
         let (input, texels) = (self.input, &self.texels);
-        let margin = rounding_margin(&body.vertices);
+        let margin = rounding_margin(&body.vertices, self.input.origin);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
         let light = &window.light;
         let texel = window.size() / texels.inner();
