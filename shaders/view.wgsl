@@ -9,8 +9,13 @@ struct AntumbraView {
     // Fall of a plane over one texel step in u and in v, for each unit of dot(row, normal); square of the depth per world
     // unit; size of dot(depth row, normal) below which a surface grazes the light.
     texel: vec4f,
-    // Texels that rounding adds to a filter's reach, manual normal offset (world units), 0, 0.
+    // Texels that rounding adds to a filter's reach, manual normal offset (world units), by how much of itself a texel of a
+    // warped map outgrows its neighbour for each unit of w, 0.
     bias: vec4f,
     // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,
+    // Warped maps: what the fall of a plane over a texel step is made of (lookup_projective.wgsl).
+    across_u: vec4f,
+    across_v: vec4f,
+    across_w: vec4f,
 }

@@ -17,10 +17,27 @@ pub const MAX_LEFT_OUT: usize = 2 * MAX_VIEWS;
 pub const MAX_CULL_PLANES: usize = 8;
 
 /// Which shader text a technique needs. A byte or two; compare it with the key a pipeline was built for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct WgslKey {
     /// How the map is filtered.
     pub filter: Pcf,
+    /// Whether positions are divided by w on their way into the map.
+    pub shape: MapShape,
+}
+
+/// The kind of transformation that leads into a map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MapShape {
+    /// Affine, w = 1: uniform maps. Casters need no fragment shader.
+    #[default]
+    Affine,
+    /// Projective: warped maps. Casters write their linear depth themselves.
+    Projective,
+}
+
+impl MapShape {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Affine, Self::Projective];
 }
 
 /// Percentage-closer filters: compare first, then average.
@@ -191,7 +208,7 @@ impl CullVolume {
     }
 }
 
-/// The receiver shader's uniform block. A key for one view reads only its first element (112 bytes).
+/// The receiver shader's uniform block. A key for one view reads only its first element (160 bytes).
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowUniforms {
@@ -217,11 +234,19 @@ pub struct ViewUniforms {
     /// `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along the light.
     /// w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
     pub texel: [f32; 4],
-    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z, w: 0.
+    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: by
+    /// how much of itself a texel of a warped map outgrows its neighbour, for each unit of w. w: 0.
     pub bias: [f32; 4],
     /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
     /// that lookups beyond the window read lit.
     pub rect: [f32; 4],
+    /// Warped maps: n · `across_v.xyz` − v n · `across_w.xyz`, times w², is how far a plane of normal n falls over one texel step in u,
+    /// along its normal, world units; 0 without automatic bias.
+    pub across_u: [f32; 4],
+    /// The same for steps in v, of u, with the opposite sign: u n · `across_w.xyz` − n · `across_u.xyz`.
+    pub across_v: [f32; 4],
+    /// What both share.
+    pub across_w: [f32; 4],
 }
 
 impl ViewUniforms {
@@ -234,5 +259,8 @@ impl ViewUniforms {
         texel: [0.0, 0.0, 0.0, 1.0],
         bias: [0.0; 4],
         rect: [0.0; 4],
+        across_u: [0.0; 4],
+        across_v: [0.0; 4],
+        across_w: [0.0; 4],
     };
 }

@@ -48,8 +48,8 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Bytes of a texel of [`DEPTH_FORMAT`].
 const DEPTH_TEXEL_BYTES: u64 = 4;
 
-/// Bytes of the matrix that a caster's vertex shader reads.
-const CASTER_BYTES: u64 = size_of::<glam::Mat4>() as u64;
+/// Bytes that a caster's vertex shader reads: the matrix, and for warped maps the row of linear depth after it.
+const CASTER_BYTES: u64 = (size_of::<glam::Mat4>() + size_of::<glam::Vec4>()) as u64;
 
 /// What [`ShadowMaps::new`] makes.
 #[derive(Clone, Copy, Debug)]
@@ -154,7 +154,10 @@ impl ShadowMaps {
         queue.write_buffer(&self.uniforms, 0, &bytes[..uniform_bytes(self.key) as usize]);
         for (index, view) in frame.views.iter().enumerate() {
             let offset = u64::from(self.caster_offset(index));
-            queue.write_buffer(&self.casters, offset, bytemuck::bytes_of(&view.clip_from_render));
+            let mut caster = [0.0; CASTER_BYTES as usize / size_of::<f32>()];
+            caster[..16].copy_from_slice(&view.clip_from_render.to_cols_array());
+            caster[16..].copy_from_slice(&view.depth_from_render.to_array());
+            queue.write_buffer(&self.casters, offset, bytemuck::bytes_of(&caster));
         }
         Ok(())
     }
@@ -219,8 +222,8 @@ impl ShadowMaps {
         bind_entries(self.key, first, &self.uniforms, &self.view, &self.compare)
     }
 
-    /// Layout of [`caster_bind_group`](Self::caster_bind_group): binding 0, `var<uniform> clip_from_render: mat4x4f` at a
-    /// dynamic offset, visible to vertex shaders.
+    /// Layout of [`caster_bind_group`](Self::caster_bind_group): binding 0 at a dynamic offset, visible to vertex shaders:
+    /// `clip_from_render: mat4x4f`, and after it, for warped maps, `depth_from_render: vec4f`.
     #[must_use]
     pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
@@ -387,7 +390,8 @@ pub fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
                 has_dynamic_offset: true,
-                min_binding_size: NonZeroU64::new(CASTER_BYTES),
+                // Affine maps read the matrix alone, warped maps the depth row too: checked when it is drawn.
+                min_binding_size: None,
             },
             count: None,
         }],

@@ -6,13 +6,13 @@ use crate::error::FitError;
 use crate::fit::bias::Bias;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
-use crate::frame::{Pcf, ShadowFrame, WgslKey};
+use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
 use crate::light::Light;
 use crate::report::{LeftOut, Why};
 use crate::technique::{FitInput, ShadowTechnique};
 
 /// How the light's coordinates are laid out on a map.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Warp {
     /// Uniform over the whole scene as the light sees it. View-independent: the map of a still scene can be kept.
@@ -20,6 +20,19 @@ pub enum Warp {
     /// Uniform over what is in view.
     #[default]
     Focused,
+    /// Warped along the view by a strength given by hand: κλ, the ratio of texel densities from the near to the far side of what is in
+    /// view, less one. 0 is focused; 0 to 1000. For experiments: the strength that pays differs from view to view.
+    Fixed {
+        /// κλ.
+        strength: f32,
+    },
+}
+
+impl Warp {
+    /// Whether maps may be projective.
+    fn bends(self) -> bool {
+        !matches!(self, Self::Uniform | Self::Focused)
+    }
 }
 
 /// What a map stores, and how it is read.
@@ -70,7 +83,8 @@ pub struct Remix {
 impl ShadowTechnique for Remix {
     fn wgsl_key(&self) -> WgslKey {
         let Encoding::Depth(filter) = self.encoding;
-        WgslKey { filter }
+        let warped = self.warp.bends() && self.stabilise == Stabilise::Off;
+        WgslKey { filter, shape: if warped { MapShape::Projective } else { MapShape::Affine } }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {
@@ -82,7 +96,7 @@ impl ShadowTechnique for Remix {
         // Find what has to be in the map.
         let body = match self.warp {
             Warp::Uniform => FocusBody::of_scene(&input.scene, travel, input.origin),
-            Warp::Focused => FocusBody::of_view(&input.camera, &input.scene, travel, input.origin),
+            _ => FocusBody::of_view(&input.camera, &input.scene, travel, input.origin),
         };
         let body = match body {
             Ok(body) => body,
@@ -99,7 +113,8 @@ impl ShadowTechnique for Remix {
             (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
             (Stabilise::Off, Warp::Focused) => fitter.focused(body, &mut frame),
             (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, &mut frame),
-            (Stabilise::SnapTexels, Warp::Focused) => fitter.snapped(body, &mut frame),
+            (Stabilise::Off, Warp::Fixed { strength }) => fitter.warped(body, f64::from(strength), &mut frame),
+            (Stabilise::SnapTexels, _) => fitter.snapped(body, &mut frame),
         };
         // Draw the conclusions: view and uniforms.
         fitter.view(&layout, &mut frame);

@@ -18,6 +18,8 @@ pub enum Part {
     Window(u8),
     /// The border of texels around a view's window.
     Border(u8),
+    /// The warp of a view, or a part of its strength.
+    Warp(u8),
 }
 
 /// Why it was left out.
@@ -78,6 +80,13 @@ pub enum Why {
     },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
+    /// The warp is stronger than its map's texels and the precision of positions allow.
+    WarpTooStrong {
+        /// κλ that was asked for.
+        asked: f64,
+        /// κλ that was given.
+        limit: f64,
+    },
 }
 
 /// One line of [`ShadowFrame::left_out`](crate::ShadowFrame::left_out). `Display` gives a sentence for an overlay or a log.
@@ -98,6 +107,7 @@ impl fmt::Display for Part {
             Self::Stabilise(index) => write!(f, "view {index}, stabilisation"),
             Self::Window(index) => write!(f, "view {index}, window"),
             Self::Border(index) => write!(f, "view {index}, border"),
+            Self::Warp(index) => write!(f, "view {index}, warp"),
         }
     }
 }
@@ -122,6 +132,9 @@ impl fmt::Display for Why {
             Self::BeyondPrecision => write!(f, "too far from the world's origin for texels of this size: not snapped"),
             Self::MapTooSmall { border, wanted } => {
                 write!(f, "the map is too small: {border} texels, {wanted} wanted by the filter")
+            }
+            Self::WarpTooStrong { asked, limit } => {
+                write!(f, "strength {asked:.4} limited to {limit:.4}: beyond that texels outgrow their neighbours")
             }
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }

@@ -6,7 +6,7 @@
 //! use antumbra::transpile::{Glsl, Shader};
 //! use antumbra::{Pcf, WgslKey, wgsl};
 //!
-//! let key = WgslKey { filter: Pcf::Hardware2x2 };
+//! let key = WgslKey { filter: Pcf::Hardware2x2, ..WgslKey::default() };
 //! let host = "@fragment fn shade(@location(0) at: vec3f) -> @location(0) vec4f {
 //!     return vec4f(antumbra_visibility(at, vec3f(0.0, 1.0, 0.0), 1.0));
 //! }";

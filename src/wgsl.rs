@@ -15,7 +15,7 @@ use core::fmt::Write as _;
 
 use arrayvec::ArrayVec;
 
-use crate::frame::{Pcf, WgslKey};
+use crate::frame::{MapShape, Pcf, WgslKey};
 
 /// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +41,10 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     fragments.push(include_str!("../shaders/view.wgsl"));
     fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
     fragments.push(CASTER);
-    fragments.push(include_str!("../shaders/lookup.wgsl"));
+    fragments.push(match key.shape {
+        MapShape::Affine => include_str!("../shaders/lookup.wgsl"),
+        MapShape::Projective => include_str!("../shaders/lookup_projective.wgsl"),
+    });
     match key.filter {
         Pcf::Point => fragments.push(include_str!("../shaders/pcf_point.wgsl")),
         Pcf::Hardware2x2 => fragments.push(include_str!("../shaders/pcf_hardware.wgsl")),
@@ -54,7 +57,10 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
             fragments.push(include_str!("../shaders/pcf_box_five.wgsl"));
         }
     }
-    fragments.push(include_str!("../shaders/visibility_one.wgsl"));
+    fragments.push(match key.shape {
+        MapShape::Affine => include_str!("../shaders/visibility_one.wgsl"),
+        MapShape::Projective => include_str!("../shaders/visibility_one_projective.wgsl"),
+    });
     fragments
 }
 
@@ -91,6 +97,6 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
 impl WgslKey {
     /// Every key, for tests and for engines that build their pipelines up front.
     pub fn all() -> impl Iterator<Item = Self> {
-        Pcf::ALL.into_iter().map(|filter| Self { filter })
+        MapShape::ALL.into_iter().flat_map(|shape| Pcf::ALL.into_iter().map(move |filter| Self { filter, shape }))
     }
 }

@@ -9,7 +9,7 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::frame::{Pcf, ViewUniforms};
+use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
 
 /// A depth map that can be compared with, as a comparison sampler does it.
 pub trait CompareMap {
@@ -89,6 +89,47 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
     }
 }
 
+/// Twin of the shader's constant: a texel may outgrow its neighbour by half.
+const ANTUMBRA_MOST_GROWTH: f32 = 0.5;
+
+/// Twin of `antumbra_lookup_projective`.
+#[must_use]
+pub fn antumbra_lookup_projective(
+    view: &ViewUniforms,
+    position: Vec3,
+    normal: Vec3,
+    reach: f32,
+    tap_reach: f32,
+) -> Lookup {
+    let [u_row, v_row, w_row, depth] =
+        [view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render].map(Vec4::from_array);
+    let [across_u, across_v, across_w] =
+        [view.across_u, view.across_v, view.across_w].map(|row| Vec4::from_array(row).xyz());
+    let [_, _, depth_squared, grazing] = view.texel;
+    let [lost_reach, manual, growth, _] = view.bias;
+    let at = position.extend(1.0);
+    let w = w_row.dot(at);
+    let from_w = 1.0 / w;
+    let (u, v) = (u_row.dot(at) * from_w, v_row.dot(at) * from_w);
+    let shared_fall = across_w.dot(normal);
+    let fall = w * w * Vec2::new(across_v.dot(normal) - v * shared_fall, u * shared_fall - across_u.dot(normal));
+    let growth = ((reach + lost_reach) * growth * w.abs()).min(ANTUMBRA_MOST_GROWTH);
+    let step = (fall.x.abs() + fall.y.abs()) / (1.0 - growth);
+    let cosine = -depth.xyz().dot(normal);
+    let inverse = 1.0 / cosine.abs().max(grazing);
+    let along_normal = (reach + lost_reach) * step * (1.0 - cosine.abs() * inverse) + manual;
+    let signed = if cosine >= 0.0 { depth_squared } else { -depth_squared };
+    let depth_per_fall = signed * inverse;
+    let moved = (position + normal * along_normal).extend(1.0);
+    let moved_w = w_row.dot(moved);
+    let lift = cosine * along_normal + (tap_reach + lost_reach + reach * growth) * step * depth_per_fall;
+    Lookup {
+        uv: Vec2::new(u_row.dot(moved), v_row.dot(moved)) / moved_w,
+        depth: if w.min(moved_w) > 0.0 { depth.dot(at) - lift } else { -1.0 },
+        slope: fall * depth_per_fall,
+    }
+}
+
 /// Twin of `antumbra_tap`: one bilinear comparison at `offset` texels, against the receiver's own plane there.
 #[must_use]
 pub fn antumbra_tap(map: &impl CompareMap, look: &Lookup, offset: Vec2) -> f32 {
@@ -138,15 +179,25 @@ pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: V
 
 /// Twin of `antumbra_visible`: share of the light that reaches a point of render space.
 #[must_use]
-pub fn antumbra_visible(filter: Pcf, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
-    let look = antumbra_lookup(view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
-    antumbra_filter(filter, map, &look)
+pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
+    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
+    let look = match key.shape {
+        MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
+        MapShape::Projective => antumbra_lookup_projective(view, position, normal, reach, tap_reach),
+    };
+    antumbra_filter(key.filter, map, &look)
 }
 
 /// Place of a point between texel centres.
 fn fraction(uv: Vec2, size: Vec2) -> Vec2 {
     let at = uv * size - 0.5;
     at - at.floor()
+}
+
+/// Twin of `antumbra_caster_depth`.
+#[must_use]
+pub fn antumbra_caster_depth(depth_from_render: Vec4, position: Vec3) -> f32 {
+    depth_from_render.dot(position.extend(1.0))
 }
 
 /// Twin of `antumbra_caster`.

@@ -14,6 +14,7 @@ use glam::{DVec2, DVec3, DVec4, Vec4};
 use crate::error::{FitError, finite};
 use crate::frame::ViewUniforms;
 use crate::math::space::{Clip, Map, Render};
+use crate::warp::window::Window;
 
 /// How a receiver is kept from shadowing itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,12 +49,16 @@ const LARGEST_MANUAL: f64 = 1e9;
 
 /// What a view's bias depends on.
 pub(crate) struct BiasInput<'a> {
-    /// Size of a texel in (p, q), world units.
+    /// The part of the plane across the light that is drawn.
+    pub(crate) window: &'a Window,
+    /// Size of a texel in (p, q), world units where W = 1.
     pub(crate) texel: DVec2,
     /// Depth range of the map along the light, world units.
     pub(crate) depth_range: f64,
     /// Clip space of the map.
     pub(crate) clip_from_render: &'a Map<Clip, Render>,
+    /// Rows of u, v (times w) and w.
+    pub(crate) texture_from_render: &'a [DVec4; 3],
     /// Largest coordinates of receivers, render space, each not negative.
     pub(crate) reach: DVec3,
     /// Side of the map, texels.
@@ -61,13 +66,15 @@ pub(crate) struct BiasInput<'a> {
 }
 
 impl Bias {
-    /// Writes the bias of an affine view into its uniforms, whose rows are there already.
+    /// Writes the bias of a view into its uniforms, whose rows are there already.
     pub(crate) fn write(self, input: &BiasInput, uniforms: &mut ViewUniforms) {
         // What rounding adds: to the texel that is looked up, and to the depth that is compared.
         let half_ulp = 0.5 * f64::from(f32::EPSILON);
         let rounding = |row: DVec4| half_ulp * (row.truncate().abs().dot(input.reach) + row.w.abs());
-        let lost_texels =
-            input.side * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))));
+        // What w loses moves a texel by as much of its distance from the middle of the map; w is 1 or more.
+        let warped = if input.window.bend.is_none() { 0.0 } else { rounding(input.clip_from_render.row(3)) };
+        let lost_texels = input.side
+            * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))) + warped);
         let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
         // How far a plane falls over a texel for each unit of a row along its normal; not at all for a manual bias.
         let automatic = if self == Self::Automatic { 1.0 } else { 0.0 };
@@ -81,6 +88,9 @@ impl Bias {
             f64::from(GRAZING_COSINE) * depth_per_unit,
         ]
         .map(narrowed);
+        let (across, growth) = input.across();
+        let [across_u, across_v, across_w] = across.map(|row| (row * automatic).extend(0.0).to_array().map(narrowed));
+        (uniforms.across_u, uniforms.across_v, uniforms.across_w) = (across_u, across_v, across_w);
         let (constant, offset) = match self {
             Self::Automatic => (0.0, 0.0),
             Self::Manual { depth_world, normal_texels } => {
@@ -90,10 +100,31 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_reach, offset, 0.0, 0.0].map(narrowed);
+        uniforms.bias = [lost_reach, offset, growth * automatic, 0.0].map(narrowed);
         // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
         let depth = input.clip_from_render.row(2);
         uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
+    }
+}
+
+impl BiasInput<'_> {
+    /// For warped maps: the vectors n · (…) of which the shader makes the fall of a plane over a texel step, and how much a
+    /// texel grows from one to the next, as a share of itself, for each unit of W.
+    ///
+    /// With (u, v) = (U, V)/W and J = ∂(u, v)/∂(p, q), the world step of a texel in u is the first column of J⁻¹ over the side:
+    /// t_u = −W² (∇V × t − v ∇W × t) / (D · side), t_v = W² (∇U × t − u ∇W × t) / (D · side), where D = W³ det J is constant, t is
+    /// the travel of light, and the change of W along them is W² ∇W · (…) without its second term.
+    fn across(&self) -> ([DVec3; 3], f64) {
+        let [u, v, w] = *self.texture_from_render;
+        let (light, bend) = (&self.window.light, &self.window.bend);
+        // D at the anchor, where W is 1.
+        let anchor = (light.p() * bend.anchor.x + light.q() * bend.anchor.y).extend(1.0);
+        let at_anchor = |row: DVec4| row.truncate() - w.truncate() * row.dot(anchor);
+        let determinant = -light.travel().dot(at_anchor(u).cross(at_anchor(v)));
+        let scale = -1.0 / (determinant * self.side);
+        let across = [u, v, w].map(|row| row.truncate().cross(light.travel()) * scale);
+        let growth = w.truncate().dot(across[0]).abs() + w.truncate().dot(across[1]).abs();
+        (across, growth)
     }
 }
 

@@ -1,18 +1,19 @@
 //! The casters of a view: everything whose shadow can fall into its map, however near to the light.
 
 use arrayvec::ArrayVec;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::frame::CullVolume;
-use crate::light_space::LightSpace;
+use crate::warp::window::Window;
 
-/// The prism along the light over the rectangle `[low, high]`, ending at `far` and open towards the light.
-pub(crate) fn prism(light: &LightSpace, low: DVec2, high: DVec2, far: f64, origin: DVec3) -> CullVolume {
+/// The prism along the light over a window, ending at `far` and open towards the light. What lies at or behind the centre of
+/// projection of a warped map (W ≤ 0) is outside: opposite sides add up to a positive multiple of W.
+pub(crate) fn prism(window: &Window, far: f64, origin: DVec3) -> CullVolume {
+    let light = &window.light;
     let mut planes = ArrayVec::new();
-    planes.push(light.p().extend(-low.x));
-    planes.push((-light.p()).extend(high.x));
-    planes.push(light.q().extend(-low.y));
-    planes.push((-light.q()).extend(high.y));
+    for side in window.sides() {
+        planes.push((light.p() * side.x + light.q() * side.y).extend(side.w));
+    }
     planes.push((-light.travel()).extend(far));
     CullVolume { origin, planes }
 }

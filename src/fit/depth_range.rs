@@ -1,10 +1,11 @@
 //! Depth along the light: from the first caster to the last receiver.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::frame::CullVolume;
 use crate::light_space::LightSpace;
 use crate::scene::{Aabb, Scene};
+use crate::warp::window::Window;
 
 /// Smallest and largest depth along the light that a view must hold, world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,16 +17,17 @@ pub(crate) struct DepthAlongLight {
 }
 
 impl DepthAlongLight {
-    /// Over the receivers `vertices`, and over the casters that `cull` (the prism of the view's window) lets pass: objects,
+    /// Over the receivers `vertices`, and over the casters that `cull` (the prism of `window`) lets pass: objects,
     /// where the scene lists any, else the casters' bounds; of each, the part that rays of the window can meet.
     ///
     /// `None` when no object can throw a shadow into the window. O(objects).
-    pub(crate) fn of(light: &LightSpace, vertices: &[DVec3], scene: &Scene, cull: &CullVolume) -> Option<Self> {
+    pub(crate) fn of(window: &Window, vertices: &[DVec3], scene: &Scene, cull: &CullVolume) -> Option<Self> {
+        let (light, corners) = (&window.light, window.corners());
         let depth = |position: DVec3| light.travel().dot(position);
         let first = |bounds: &Aabb| {
             let here = Aabb::new(bounds.min - cull.origin, bounds.max - cull.origin);
             let nearest = depth(here.centre()) - light.travel().abs().dot(here.half_size());
-            nearest.max(entry(light, &here, cull))
+            nearest.max(entry(light, &here, &corners))
         };
         let mut near = f64::INFINITY;
         if scene.objects.is_empty() {
@@ -54,8 +56,7 @@ impl DepthAlongLight {
 
 /// A lower bound of the depth at which rays of the window enter a box (render space): for each pair of faces that rays do
 /// not run along, the least depth over the window at which they pass the first one; the largest of those.
-fn entry(light: &LightSpace, bounds: &Aabb, cull: &CullVolume) -> f64 {
-    let [left, right, down, up, ..] = cull.planes() else { return f64::NEG_INFINITY };
+fn entry(light: &LightSpace, bounds: &Aabb, corners: &[DVec2; 4]) -> f64 {
     let mut entry = f64::NEG_INFINITY;
     for axis in 0..3 {
         let travel = light.travel()[axis];
@@ -63,8 +64,8 @@ fn entry(light: &LightSpace, bounds: &Aabb, cull: &CullVolume) -> f64 {
             continue;
         }
         // Rays start where (p, q) puts them; of the window, the corner from which they reach the face soonest.
-        let (p, q) = (light.p()[axis] * travel.signum(), light.q()[axis] * travel.signum());
-        let start = (p * -left.w).max(p * right.w) + (q * -down.w).max(q * up.w);
+        let along = DVec2::new(light.p()[axis], light.q()[axis]) * travel.signum();
+        let start = corners.iter().map(|corner| along.dot(*corner)).fold(f64::NEG_INFINITY, f64::max);
         let face = if travel > 0.0 { bounds.min[axis] } else { -bounds.max[axis] };
         entry = entry.max((face - start) / travel.abs());
     }

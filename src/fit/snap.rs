@@ -8,7 +8,8 @@ use glam::{DVec2, DVec3};
 use crate::camera::{Camera, Projection};
 use crate::fit::depth_range::rounding;
 use crate::report::Why;
-use crate::warp::uniform::Window;
+use crate::warp::bend::Bend;
+use crate::warp::window::Window;
 
 /// Steps per doubling in which a snapped window may grow. More steps fit tighter but change the texel size, and so let
 /// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
@@ -44,7 +45,7 @@ pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, or
     }
     let corner = light.ray(centre).truncate() - DVec2::splat(radius);
     let low = (corner / texel).floor() * texel - grid;
-    Ok(Window { light, low, high: low + side })
+    Ok(Window { light, bend: Bend::NONE, low, high: low + side })
 }
 
 /// Scene windows grow in steps too, so that a moving object at their border changes the texels seldom.
@@ -59,7 +60,7 @@ pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
         return *window;
     }
     let low = ((window.low + grid) / texel).floor() * texel - grid;
-    Window { light: window.light, low, high: low + texel * texels }
+    Window { low, high: low + texel * texels, ..*window }
 }
 
 /// The origin's distance from the world's, up to the next power of two: it may follow the eye, texels must not.

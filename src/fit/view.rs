@@ -1,24 +1,17 @@
 //! From a body to a view: window, texels, casters, depth, matrix, bias.
 
-use glam::{DVec2, DVec3, UVec4};
+use glam::{DVec3, DVec4, UVec4};
 
 use crate::aliasing::footprint;
 use crate::fit::bias::{Bias, BiasInput};
+use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding_margin};
-use crate::fit::{cull, snap};
-use crate::focus::FocusBody;
+use crate::fit::layout::Layout;
 use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
-use crate::light_space::LightSpace;
 use crate::math::space::{Clip, Map, Render};
 use crate::report::{Part, Why};
-use crate::scene::Aabb;
 use crate::technique::FitInput;
-use crate::warp::uniform::Window;
-
-/// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera for
-/// next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of the
-/// error). At 0.9 the still map costs at most 5 % of a texel's side, and can be kept as long as the scene is still.
-const WORTH_FOCUSING: f64 = 0.9;
+use crate::warp::window::Window;
 
 /// What a body is fitted with.
 pub(crate) struct Fitter<'a> {
@@ -54,93 +47,46 @@ impl Texels {
         Self { inner: side - 2 * border, border, ring: border.min(1), wanted }
     }
 
+    /// Texels of border on each side, at least one.
+    pub(crate) fn border(&self) -> f64 {
+        f64::from(self.border.max(1))
+    }
+
     /// Texels over the window, as a divisor.
-    fn inner(&self) -> f64 {
+    pub(crate) fn over_window(&self) -> f64 {
         f64::from(self.inner)
     }
 }
 
-/// A body, and the window that is laid around it.
-pub(crate) type Layout = (FocusBody, Window);
-
 impl Fitter<'_> {
-    /// The window of least area around a body.
-    pub(crate) fn tight(&self, body: FocusBody) -> Layout {
-        let window = Window::least_area(LightSpace::fixed(self.travel), &body.vertices);
-        let window = window.grown(rounding_margin(&body.vertices, self.input.origin));
-        (body, window)
-    }
-
-    /// The window of least area around what is in view; around the whole scene where that has hardly larger texels, because
-    /// a map that does not follow the camera need not be drawn anew.
-    pub(crate) fn focused(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
-        let (body, window) = self.tight(body);
-        // Most windows are far smaller than the bounds as the light sees them: no need to fit the scene.
-        let scene = &self.input.scene;
-        let both = Aabb::new(scene.casters.min.max(scene.receivers.min), scene.casters.max.min(scene.receivers.max));
-        let meet = both.min.cmple(both.max).all();
-        if meet && window.area() <= WORTH_FOCUSING * lit_area(&both, self.travel) {
-            return (body, window);
-        }
-        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else { return (body, window) };
-        let (whole, still) = self.tight(whole);
-        let share = (window.area() / still.area()).min(1.0);
-        if share <= WORTH_FOCUSING {
-            return (body, window);
-        }
-        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
-        (whole, still)
-    }
-
-    /// The window of the whole scene, which does not move with the camera.
-    pub(crate) fn still(&self, whole: FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
-        frame.leave_out(Part::Stabilise(0), why);
-        let window = snap::still(&self.around(&whole), self.texels.inner(), self.input.origin);
-        (whole, window)
-    }
-
-    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller.
-    pub(crate) fn snapped(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
-        let (camera, scene) = (&self.input.camera, &self.input.scene);
-        let (_, far) = camera.projection.depth_range();
-        let far = scene.visible_depth.map_or(far, |visible| far.min(visible.far));
-        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else {
-            return self.still(body, Why::AlreadyStill, frame);
-        };
-        match snap::snapped(camera, far, &self.around(&whole), self.texels.inner(), self.input.origin) {
-            Ok(window) => (body, window),
-            Err(why) => self.still(whole, why, frame),
-        }
-    }
-
-    /// The window around a body in the fixed frame of the light.
-    fn around(&self, body: &FocusBody) -> Window {
-        let window = Window::around(LightSpace::fixed(self.travel), &body.vertices);
-        window.grown(rounding_margin(&body.vertices, self.input.origin))
-    }
-
     /// From a window to a view and its uniforms, appended to the frame.
-    pub(crate) fn view(&self, (body, window): &Layout, frame: &mut ShadowFrame) {
+    pub(crate) fn view(&self, &Layout { ref body, ref window, strength }: &Layout, frame: &mut ShadowFrame) {
         let (input, texels) = (self.input, &self.texels);
         let margin = rounding_margin(&body.vertices, self.input.origin);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
         let light = &window.light;
-        let texel = window.size() / texels.inner();
-        let border = texel * f64::from(texels.border - texels.ring);
-        let (low, high) = (window.low - border, window.high + border);
+        let texel = window.size() / texels.over_window();
+        let drawn = window.bordered(texel * f64::from(texels.border - texels.ring));
         // Casters, and the depth that they and the receivers need.
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
-        let cull = cull::prism(light, low, high, last + margin, input.origin);
-        let Some(depth) = DepthAlongLight::of(light, &body.vertices, &input.scene, &cull) else {
+        let cull = cull::prism(&drawn, last + margin, input.origin);
+        let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
             return frame.leave_out(Part::Light, Why::NothingCastsHere);
         };
         let depth = depth.widened(margin);
         // One matrix, in f64, narrowed once; and what the receiver shader reads.
-        let clip_from_ray = Map::crop(low.extend(depth.near), high.extend(depth.far));
-        let clip_from_render = clip_from_ray * light.ray_from_render();
-        let mut uniforms = self.affine_uniforms(&clip_from_render);
-        self.bias.write(&self.bias_input(body, texel, depth, &clip_from_render), &mut uniforms);
-        let (pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, texel.max_element());
+        let clip_from_render = drawn.clip_from_ray(depth.near, depth.far) * light.ray_from_render();
+        let rows = self.texture_rows(&clip_from_render);
+        let mut uniforms = self.uniforms(&rows, &clip_from_render);
+        self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
+        let sides = |vertex: &DVec3| drawn.texel_at(light.ray(*vertex).truncate(), texel).map(|side| side.length());
+        let longest = |vertex: &DVec3| sides(vertex).into_iter().fold(0.0, f64::max);
+        let (pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, longest);
+        let world = body
+            .vertices
+            .iter()
+            .flat_map(sides)
+            .fold([f64::INFINITY, 0.0], |[least, most], side| [side.min(least), side.max(most)]);
         // Say what was cut.
         if window.size().min_element() < 3.0 * margin {
             frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: window.size().min_element() });
@@ -156,8 +102,8 @@ impl Fitter<'_> {
             viewport: UVec4::new(ring, ring, input.map.side - 2 * ring, input.map.side - 2 * ring),
             layer: 0,
             cull,
-            texel: TexelSize { world: [texel.min_element() as f32, texel.max_element() as f32], pixels },
-            warp_strength: 0.0,
+            texel: TexelSize { world: world.map(|side| side.min(f64::from(f32::MAX)) as f32), pixels },
+            warp_strength: strength as f32,
             domain,
         };
         if frame.views.try_push(view).is_ok() {
@@ -169,39 +115,47 @@ impl Fitter<'_> {
 
     fn bias_input<'b>(
         &self,
-        body: &FocusBody,
-        texel: DVec2,
+        drawn: &'b Window,
+        vertices: &[DVec3],
+        texture_from_render: &'b [DVec4; 3],
         depth: DepthAlongLight,
         clip_from_render: &'b Map<Clip, Render>,
     ) -> BiasInput<'b> {
-        let reach = body.vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
-        let side = f64::from(self.input.map.side);
-        BiasInput { texel, depth_range: depth.far - depth.near, clip_from_render, reach, side }
+        let reach = vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
+        let (side, ring) = (self.input.map.side, self.texels.ring);
+        let texel = drawn.size() / f64::from(side - 2 * ring);
+        let depth_range = depth.far - depth.near;
+        BiasInput {
+            window: drawn,
+            texel,
+            depth_range,
+            clip_from_render,
+            texture_from_render,
+            reach,
+            side: f64::from(side),
+        }
     }
 
-    /// The rows that the receiver shader needs, for a map with w = 1: texture coordinates from clip coordinates, and depth.
-    fn affine_uniforms(&self, clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
-        // The viewport's share of the map.
+    /// The rows of u, v and w: texture coordinates (times w) from clip coordinates, the viewport's share of the map.
+    fn texture_rows(&self, clip_from_render: &Map<Clip, Render>) -> [DVec4; 3] {
         let ring = f64::from(self.texels.ring) / f64::from(self.input.map.side);
         let half = 0.5 - ring;
-        let row = |row: usize, sign: f64| {
-            let row = clip_from_render.row(row) * (half * sign);
-            row.truncate().extend(row.w + 0.5).as_vec4().to_array()
-        };
+        let w = clip_from_render.row(3);
+        [clip_from_render.row(0) * half + w * 0.5, clip_from_render.row(1) * -half + w * 0.5, w]
+    }
+
+    /// What the receiver shader needs besides the bias.
+    fn uniforms(&self, texture_from_render: &[DVec4; 3], clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
+        let [u, v, w] = texture_from_render.map(|row| row.as_vec4().to_array());
+        let ring = f64::from(self.texels.ring) / f64::from(self.input.map.side);
         let (low, high) = (ring as f32, (1.0 - ring) as f32);
         ViewUniforms {
-            u_from_render: row(0, 1.0),
-            v_from_render: row(1, -1.0),
-            w_from_render: [0.0, 0.0, 0.0, 1.0],
+            u_from_render: u,
+            v_from_render: v,
+            w_from_render: w,
             depth_from_render: clip_from_render.narrow_row(2).to_array(),
             rect: [low, low, high, high],
             ..ViewUniforms::LIT
         }
     }
-}
-
-/// Area of a box as the light sees it: no window around it is smaller.
-fn lit_area(bounds: &Aabb, travel: DVec3) -> f64 {
-    let size = bounds.max - bounds.min;
-    travel.abs().dot(DVec3::new(size.y * size.z, size.x * size.z, size.x * size.y))
 }

@@ -17,7 +17,7 @@ use super::scene::SceneModel;
 use super::subject::Subject;
 use crate::camera::Camera;
 use crate::encoding::depth::{DepthMap, antumbra_visible};
-use crate::frame::ShadowFrame;
+use crate::frame::{MapShape, ShadowFrame};
 
 /// A shadow mask and what it took.
 #[derive(Clone, Debug)]
@@ -60,7 +60,9 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     let objects = subject.objects.iter().zip(&subject.model.objects);
     let casters: Vec<_> =
         objects.filter(|(object, _)| view.cull.may_cast(&object.bounds)).map(|(_, range)| range.clone()).collect();
-    let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render: None, origin };
+    // Warped maps keep linear depth; it is what z is in affine ones.
+    let depth_from_render = (frame.wgsl.shape == MapShape::Projective).then_some(view.depth_from_render);
+    let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render, origin };
     rasterise(&mut drawn, &subject.model, &casters, &pass);
     let map = placed(&drawn, view.viewport, frame.map.side);
     let casters_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -68,9 +70,8 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     let start = Instant::now();
     let map = DepthMap { size: UVec2::splat(frame.map.side), depth: &map };
     let uniforms = &frame.uniforms.views[0];
-    let filter = frame.wgsl.filter;
     let lit = |hit: &Option<Hit>| match hit {
-        Some(hit) => antumbra_visible(filter, uniforms, &map, hit.position.as_vec3(), hit.normal.as_vec3()),
+        Some(hit) => antumbra_visible(frame.wgsl, uniforms, &map, hit.position.as_vec3(), hit.normal.as_vec3()),
         None => 1.0,
     };
     let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();

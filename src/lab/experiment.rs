@@ -252,8 +252,9 @@ impl Shot {
 pub fn stage_names(remix: &Remix) -> [String; 3] {
     let Encoding::Depth(filter) = remix.encoding;
     let warp = match remix.warp {
-        Warp::Uniform => "uniform",
-        Warp::Focused => "focused",
+        Warp::Uniform => "uniform".to_owned(),
+        Warp::Focused => "focused".to_owned(),
+        Warp::Fixed { strength } => format!("strength {strength}"),
     };
     let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };
     ["one map".to_owned(), format!("{warp}{snapped}"), format!("depth {}", filter.name())]

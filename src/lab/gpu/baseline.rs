@@ -149,7 +149,7 @@ impl ByHand {
         });
         let map = map.create_view(&wgpu::TextureViewDescriptor::default());
         let text = [include_str!("cutout.wgsl"), include_str!("by_hand_casters.wgsl")].concat();
-        let casters = pipelines::caster_pair(gpu, "casters by hand", &text, renderer.caster_layout());
+        let casters = pipelines::caster_pair(gpu, "casters by hand", &text, None, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
         // Receivers: the first view's map.
         let text = [pipelines::STAGE, pipelines::SHADE, include_str!("by_hand.wgsl")].concat();

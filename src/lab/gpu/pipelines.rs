@@ -3,7 +3,7 @@
 use wgpu::VertexFormat::{Float32x2, Float32x3, Snorm16x4};
 
 use super::{Gpu, scene::Attributes};
-use crate::frame::WgslKey;
+use crate::frame::{MapShape, WgslKey};
 use crate::gpu;
 use crate::wgsl::{self, Bindings};
 
@@ -35,20 +35,32 @@ pub(super) struct PairDescriptor<'a> {
 }
 
 /// The library's pass over casters: its layout, its matrix, its vertex function.
-pub(super) fn casters(gpu: &Gpu, caster_layout: &wgpu::BindGroupLayout) -> Pair {
-    let text = [wgsl::CASTER, include_str!("cutout.wgsl"), include_str!("casters.wgsl")].concat();
-    caster_pair(gpu, "casters", &text, caster_layout)
+pub(super) fn casters(gpu: &Gpu, shape: MapShape, caster_layout: &wgpu::BindGroupLayout) -> Pair {
+    let text = |stage| [wgsl::CASTER, include_str!("cutout.wgsl"), stage].concat();
+    match shape {
+        MapShape::Affine => caster_pair(gpu, "casters", &text(include_str!("casters.wgsl")), None, caster_layout),
+        MapShape::Projective => {
+            let text = text(include_str!("casters_projective.wgsl"));
+            caster_pair(gpu, "casters", &text, Some("write_depth"), caster_layout)
+        }
+    }
 }
 
-/// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`.
-pub(super) fn caster_pair(gpu: &Gpu, label: &'static str, text: &str, layout: &wgpu::BindGroupLayout) -> Pair {
+/// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`, and a fragment stage for solid ones.
+pub(super) fn caster_pair(
+    gpu: &Gpu,
+    label: &'static str,
+    text: &str,
+    solid: Option<&'static str>,
+    layout: &wgpu::BindGroupLayout,
+) -> Pair {
     pair(
         gpu,
         &PairDescriptor {
             label,
             text,
             groups: [Some(layout), None],
-            solid: ("throw_solid", None),
+            solid: ("throw_solid", solid),
             cut: ("throw_cut", "cut"),
             depth: gpu::depth_stencil_state(),
             target: None,

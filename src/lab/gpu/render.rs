@@ -54,7 +54,7 @@ impl Renderer {
         let caster_layout = caster_layout(gpu);
         Self {
             key,
-            casters: pipelines::casters(gpu, &caster_layout),
+            casters: pipelines::casters(gpu, key.shape, &caster_layout),
             depth: pipelines::camera_depth(gpu),
             receivers: pipelines::receivers(gpu, key),
             caster_layout,

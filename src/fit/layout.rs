@@ -1,0 +1,131 @@
+//! Where the window of a map is laid: around the body, around the whole scene, on a grid, or bent.
+
+use glam::DVec3;
+
+use crate::fit::depth_range::rounding_margin;
+use crate::fit::snap;
+use crate::fit::view::Fitter;
+use crate::focus::FocusBody;
+use crate::frame::ShadowFrame;
+use crate::light_space::LightSpace;
+use crate::math::homography::STRONGEST;
+use crate::report::{Part, Why};
+use crate::scene::Aabb;
+use crate::warp::bend::Bend;
+use crate::warp::sight::Sight;
+use crate::warp::window::Window;
+
+/// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera for
+/// next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of the
+/// error). At 0.9 the still map costs at most 5 % of a texel's side, and can be kept as long as the scene is still.
+const WORTH_FOCUSING: f64 = 0.9;
+
+/// Beyond the base line, a map has room for λ/(κλ) of its bent extent before the horizon: the border may take up to this share of it. At 1
+/// the outermost texels would reach infinity; near 0 only weak warps would be possible in small maps.
+const MOST_HORIZON: f64 = 0.5;
+
+/// By how much W may change over what positions are uncertain by. At 1 a vertex on the top line could have W = 0; near 0 warps would be
+/// given up where f32 still serves them.
+const MOST_ROUNDING: f64 = 0.125;
+
+/// A body, and the window that is laid around it.
+pub(crate) struct Layout {
+    /// What has to be in the map.
+    pub(crate) body: FocusBody,
+    /// The map's extent across the light.
+    pub(crate) window: Window,
+    /// κλ of its warp; 0 for uniform maps.
+    pub(crate) strength: f64,
+}
+
+impl Layout {
+    fn uniform(body: FocusBody, window: Window) -> Self {
+        Self { body, window, strength: 0.0 }
+    }
+}
+
+impl Fitter<'_> {
+    /// The window of least area around a body.
+    pub(crate) fn tight(&self, body: FocusBody) -> Layout {
+        let margin = rounding_margin(&body.vertices, self.input.origin);
+        let window = Window::least_area(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin);
+        Layout::uniform(body, window)
+    }
+
+    /// The window of least area around what is in view; around the whole scene where that has hardly larger texels, because
+    /// a map that does not follow the camera need not be drawn anew.
+    pub(crate) fn focused(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+        let tight = self.tight(body);
+        let window = &tight.window;
+        // Most windows are far smaller than the bounds as the light sees them: no need to fit the scene.
+        let scene = &self.input.scene;
+        let both = Aabb::new(scene.casters.min.max(scene.receivers.min), scene.casters.max.min(scene.receivers.max));
+        let meet = both.min.cmple(both.max).all();
+        if meet && window.area() <= WORTH_FOCUSING * lit_area(&both, self.travel) {
+            return tight;
+        }
+        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else { return tight };
+        let still = self.tight(whole);
+        let share = (window.area() / still.window.area()).min(1.0);
+        if share <= WORTH_FOCUSING {
+            return tight;
+        }
+        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
+        still
+    }
+
+    /// The window of the whole scene, which does not move with the camera.
+    pub(crate) fn still(&self, whole: FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
+        frame.leave_out(Part::Stabilise(0), why);
+        let window = snap::still(&self.around(&whole), self.texels.over_window(), self.input.origin);
+        Layout::uniform(whole, window)
+    }
+
+    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller.
+    pub(crate) fn snapped(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+        let (camera, scene) = (&self.input.camera, &self.input.scene);
+        let (_, far) = camera.projection.depth_range();
+        let far = scene.visible_depth.map_or(far, |visible| far.min(visible.far));
+        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else {
+            return self.still(body, Why::AlreadyStill, frame);
+        };
+        match snap::snapped(camera, far, &self.around(&whole), self.texels.over_window(), self.input.origin) {
+            Ok(window) => Layout::uniform(body, window),
+            Err(why) => self.still(whole, why, frame),
+        }
+    }
+
+    /// The window around what is in view, bent along the view by κλ = `strength`.
+    pub(crate) fn warped(&self, body: FocusBody, strength: f64, frame: &mut ShadowFrame) -> Layout {
+        let margin = rounding_margin(&body.vertices, self.input.origin);
+        let sight = Sight::of(&self.input.camera, self.travel, &body.vertices, self.input.origin);
+        let around = sight.frame();
+        let limit = self.strongest(around.extent, margin);
+        if strength > limit {
+            frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked: strength, limit });
+        }
+        let strength = strength.min(limit);
+        let bend = Bend::new(&around, strength / around.extent);
+        let window = Window::least_area(sight.light, bend, &body.vertices, margin);
+        Layout { body, window, strength }
+    }
+
+    /// The largest κλ that a map of these texels takes over `extent` world units, positions being uncertain by `margin`.
+    fn strongest(&self, extent: f64, margin: f64) -> f64 {
+        let by_border = MOST_HORIZON * self.texels.over_window() / self.texels.border();
+        let by_rounding = MOST_ROUNDING * extent / margin;
+        STRONGEST.min(by_border).min(by_rounding)
+    }
+
+    /// The window around a body in the fixed frame of the light.
+    fn around(&self, body: &FocusBody) -> Window {
+        let margin = rounding_margin(&body.vertices, self.input.origin);
+        Window::around(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin)
+    }
+}
+
+/// Area of a box as the light sees it: no window around it is smaller.
+fn lit_area(bounds: &Aabb, travel: DVec3) -> f64 {
+    let size = bounds.max - bounds.min;
+    travel.abs().dot(DVec3::new(size.y * size.z, size.x * size.z, size.x * size.y))
+}
