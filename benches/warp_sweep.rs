@@ -11,12 +11,26 @@ use antumbra::lab::experiment::{Backend, BackendChoice, Studio};
 use antumbra::lab::files::write_whole;
 use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::TruthCache;
-use antumbra::{Remix, Warp};
+use antumbra::{Remix, Warp, techniques};
 
 /// Sides of maps, texels.
 const SIZES: [u32; 4] = [256, 512, 1024, 2048];
 /// κλ: from none to more than any picture has wanted.
 const STRENGTHS: [f32; 16] = [0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 30.0, 45.0, 60.0];
+
+/// Techniques beside the sweep, and whether the guard is on.
+const NAMED: [(&str, bool); 10] = [
+    ("fsm", true),
+    ("psm", false),
+    ("psm", true),
+    ("tsm", false),
+    ("tsm", true),
+    ("lispsm", false),
+    ("lispsm", true),
+    ("minimax", false),
+    ("minimax", true),
+    ("least-error", true),
+];
 
 fn main() {
     if std::env::args().any(|argument| argument == "--test") {
@@ -70,8 +84,13 @@ fn run() -> Result<(), String> {
                 Studio::new(&mut backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
             for size in SIZES {
                 let mut line = format!("{name} {size}:");
-                for strength in STRENGTHS {
-                    let remix = Remix { warp: Warp::Fixed { strength }, ..Remix::default() };
+                let fixed = STRENGTHS.map(|strength| (strength.to_string(), Warp::Fixed { strength }, true));
+                let chosen = NAMED.map(|(name, guard)| {
+                    let warp = techniques::by_name(name).map_or(Warp::Focused, |remix| remix.warp);
+                    (if guard { name.to_owned() } else { format!("{name} unguarded") }, warp, guard)
+                });
+                for (strength, warp, guard) in fixed.into_iter().chain(chosen) {
+                    let remix = Remix { warp, guard, ..Remix::default() };
                     let shot = studio.shoot(&remix, size, 1).map_err(|error| error.to_string())?;
                     let scores = shot.scores(&truth).map_err(|error| error.to_string())?;
                     let applied = shot.frame.views.first().map_or(0.0, |view| view.warp_strength);
@@ -79,11 +98,7 @@ fn run() -> Result<(), String> {
                     let _ = writeln!(
                         csv,
                         "{set},{},{},{size},{strength},{applied},{},{near},{mid},{far},{},{}",
-                        assignment.scene,
-                        case.name,
-                        scores.wrong_center,
-                        scores.false_interior,
-                        scores.leak_interior
+                        assignment.scene, case.name, scores.wrong_center, scores.false_interior, scores.leak_interior
                     );
                     let _ = write!(line, " {:.3}", 100.0 * scores.wrong_center);
                 }

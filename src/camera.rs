@@ -181,6 +181,29 @@ impl Camera {
         })
     }
 
+    /// Where a point of render space is in the picture: tangents from the view axis, or distances (orthographic).
+    pub(crate) fn picture_position(&self, position: DVec3, origin: DVec3) -> DVec2 {
+        let from_eye = position - (self.eye() - origin);
+        let at = DVec2::new(
+            self.world_from_view.x_axis.truncate().dot(from_eye),
+            self.world_from_view.y_axis.truncate().dot(from_eye),
+        );
+        match self.projection {
+            Projection::Perspective { near, .. } => at / from_eye.dot(self.forward()).max(near),
+            Projection::Orthographic { .. } => at,
+        }
+    }
+
+    /// The ray of a place in the picture, as (start, direction) in render space: its point of eye depth ζ is start + ζ direction.
+    pub(crate) fn ray(&self, at: DVec2, origin: DVec3) -> (DVec3, DVec3) {
+        let eye = self.eye() - origin;
+        let aside = self.world_from_view.x_axis.truncate() * at.x + self.world_from_view.y_axis.truncate() * at.y;
+        match self.projection {
+            Projection::Perspective { .. } => (eye, aside + self.forward()),
+            Projection::Orthographic { .. } => (eye + aside, self.forward()),
+        }
+    }
+
     /// Eye depth of a point of render space.
     pub(crate) fn eye_depth(&self, position: DVec3, origin: DVec3) -> f64 {
         (position - (self.eye() - origin)).dot(self.forward())
@@ -202,6 +225,12 @@ impl Projection {
             Self::Perspective { left, right, down, up, .. } => (left, right, down, up, true),
             Self::Orthographic { left, right, down, up, .. } => (left, right, down, up, false),
         }
+    }
+
+    /// The middle of the picture: tangents from the view axis, or distances (orthographic).
+    pub(crate) fn middle(&self) -> DVec2 {
+        let (left, right, down, up, _) = self.sides();
+        DVec2::new(left.midpoint(right), down.midpoint(up))
     }
 
     /// Width and height of the picture in world units at an eye depth.

@@ -17,6 +17,10 @@ use crate::scene::{Aabb, DepthRange, Scene};
 pub(crate) struct FocusBody {
     /// Its vertices, all finite, at least one.
     pub(crate) vertices: ArrayVec<DVec3, MAX_VERTICES>,
+    /// The half-spaces that cut it out of the view frustum (or out of the receivers' bounds): it lies in all of them.
+    pub(crate) walls: ArrayVec<HalfSpace, MAX_WALLS>,
+    /// The eye depths of the frustum it was cut from; all of them for a body of the scene.
+    pub(crate) depth: DepthRange,
     /// What the body does without.
     pub(crate) left_out: ArrayVec<LeftOut, 2>,
 }
@@ -25,12 +29,17 @@ pub(crate) struct FocusBody {
 /// that rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs texels.
 const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
+/// Most walls: a box (6), and the shadow of a box (9).
+pub(crate) const MAX_WALLS: usize = 15;
+
 impl FocusBody {
     /// The receivers of the whole scene that the casters' bounds can shadow, whoever looks: view-independent.
     pub(crate) fn of_scene(scene: &Scene, travel: DVec3, origin: DVec3) -> Result<Self, LeftOut> {
         nothing_in(scene)?;
         let receivers = grown(&scene.receivers, origin, 0.0);
-        Self::shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)
+        let depth = DepthRange { near: f64::NEG_INFINITY, far: f64::INFINITY };
+        let body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
+        body.shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)
     }
 
     /// The receivers in view: frustum ∩ receivers' bounds ∩ the shadow of the casters' bounds.
@@ -41,14 +50,18 @@ impl FocusBody {
         let mut body = Convex::hexahedron(camera.corners(near, far, origin));
         // Of it, what the receivers' bounds hold.
         let reach = (camera.eye() - origin).abs().max_element();
-        for plane in box_planes(&grown(&scene.receivers, origin, reach)) {
+        let walls = box_planes(&grown(&scene.receivers, origin, reach));
+        for plane in walls {
             body.clip(plane);
         }
         if body.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NoReceiversInView { near, far } });
         }
         // Of that, what something can shadow.
-        let mut body = Self::shadowed(body, scene, travel, origin, reach)?;
+        let depth = DepthRange { near, far };
+        let cut =
+            Self { vertices: ArrayVec::new(), walls: walls.into_iter().collect(), depth, left_out: ArrayVec::new() };
+        let mut body = cut.shadowed(body, scene, travel, origin, reach)?;
         if (DepthRange { near, far }) != camera_depth(camera) {
             let _ = body.left_out.try_push(LeftOut { part: Part::Frustum, why: Why::NotVisible { near, far } });
         }
@@ -56,25 +69,32 @@ impl FocusBody {
     }
 
     /// Of a body, what the shadow of the casters' bounds reaches.
-    fn shadowed(mut body: Convex, scene: &Scene, travel: DVec3, origin: DVec3, reach: f64) -> Result<Self, LeftOut> {
+    fn shadowed(
+        mut self,
+        mut body: Convex,
+        scene: &Scene,
+        travel: DVec3,
+        origin: DVec3,
+        reach: f64,
+    ) -> Result<Self, LeftOut> {
         let (casters, receivers) = (&scene.casters, &scene.receivers);
-        let mut left_out = ArrayVec::new();
         // Receivers among the casters are all in their shadow.
         let among = casters.min.cmple(receivers.min).all() && casters.max.cmpge(receivers.max).all();
         if !among {
             let mut cut = false;
             for plane in shadow_planes(&grown(casters, origin, reach), travel) {
                 cut |= body.clip(plane);
+                let _ = self.walls.try_push(plane); // never full: MAX_WALLS
             }
             if cut {
-                left_out.push(LeftOut { part: Part::Receivers(0), why: Why::LitWithoutLookup });
+                self.left_out.push(LeftOut { part: Part::Receivers(0), why: Why::LitWithoutLookup });
             }
         }
-        let vertices: ArrayVec<DVec3, MAX_VERTICES> = body.points().collect();
-        if vertices.is_empty() {
+        self.vertices = body.points().collect();
+        if self.vertices.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NothingCastsHere });
         }
-        Ok(Self { vertices, left_out })
+        Ok(self)
     }
 }
 

@@ -10,30 +10,7 @@ use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
 use crate::light::Light;
 use crate::report::{LeftOut, Why};
 use crate::technique::{FitInput, ShadowTechnique};
-
-/// How the light's coordinates are laid out on a map.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Warp {
-    /// Uniform over the whole scene as the light sees it. View-independent: the map of a still scene can be kept.
-    Uniform,
-    /// Uniform over what is in view.
-    #[default]
-    Focused,
-    /// Warped along the view by a strength given by hand: κλ, the ratio of texel densities from the near to the far side of what is in
-    /// view, less one. 0 is focused; 0 to 1000. For experiments: the strength that pays differs from view to view.
-    Fixed {
-        /// κλ.
-        strength: f32,
-    },
-}
-
-impl Warp {
-    /// Whether maps may be projective.
-    fn bends(self) -> bool {
-        !matches!(self, Self::Uniform | Self::Focused)
-    }
-}
+use crate::warp::Warp;
 
 /// What a map stores, and how it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +44,7 @@ pub enum Stabilise {
 /// let soft_and_still = Remix { encoding: Encoding::Depth(Pcf::Box5x5), stabilise: Stabilise::SnapTexels, ..Remix::default() };
 /// # let _ = soft_and_still;
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remix {
     /// Layout of a map. Default: focused, because its texels are never larger in area than the uniform map's by more
     /// than rounding.
@@ -78,6 +55,21 @@ pub struct Remix {
     pub bias: Bias,
     /// Default: off, the sharpest.
     pub stabilise: Stabilise,
+    /// Limits published warps to the strength that is predicted to be no worse than uniform. Default: on; off reproduces the papers. Least-error
+    /// and fixed strengths are what they are either way.
+    pub guard: bool,
+}
+
+impl Default for Remix {
+    fn default() -> Self {
+        Self {
+            warp: Warp::default(),
+            encoding: Encoding::default(),
+            bias: Bias::default(),
+            stabilise: Stabilise::default(),
+            guard: true,
+        }
+    }
 }
 
 impl ShadowTechnique for Remix {
@@ -91,6 +83,7 @@ impl ShadowTechnique for Remix {
         // Check the inputs at the door.
         let input = input.validate()?;
         self.bias.validate()?;
+        self.warp.validate()?;
         let travel = directional(&input.light)?;
         let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
         // Find what has to be in the map.
@@ -113,7 +106,7 @@ impl ShadowTechnique for Remix {
             (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
             (Stabilise::Off, Warp::Focused) => fitter.focused(body, &mut frame),
             (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, &mut frame),
-            (Stabilise::Off, Warp::Fixed { strength }) => fitter.warped(body, f64::from(strength), &mut frame),
+            (Stabilise::Off, warp) => fitter.warped(body, warp, self.guard, &mut frame),
             (Stabilise::SnapTexels, _) => fitter.snapped(body, &mut frame),
         };
         // Draw the conclusions: view and uniforms.

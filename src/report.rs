@@ -80,6 +80,13 @@ pub enum Why {
     },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
+    /// The published strength is predicted to be worse than no warp.
+    WarpDoesNotPay {
+        /// κλ that the method asked for.
+        asked: f64,
+        /// κλ that is no worse than none.
+        limit: f64,
+    },
     /// The warp is stronger than its map's texels and the precision of positions allow.
     WarpTooStrong {
         /// κλ that was asked for.
@@ -132,6 +139,9 @@ impl fmt::Display for Why {
             Self::BeyondPrecision => write!(f, "too far from the world's origin for texels of this size: not snapped"),
             Self::MapTooSmall { border, wanted } => {
                 write!(f, "the map is too small: {border} texels, {wanted} wanted by the filter")
+            }
+            Self::WarpDoesNotPay { asked, limit } => {
+                write!(f, "strength {asked:.4} guarded to {limit:.4}: more is predicted to be worse than none")
             }
             Self::WarpTooStrong { asked, limit } => {
                 write!(f, "strength {asked:.4} limited to {limit:.4}: beyond that texels outgrow their neighbours")

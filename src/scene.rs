@@ -107,13 +107,16 @@ pub struct Scene<'a> {
     pub objects: &'a [Object],
     /// The eye depths that are visible at all (the shadow distance, or the range of last frame's depth buffer).
     pub visible_depth: Option<DepthRange>,
+    /// Positions of surfaces that are seen, world space: a few hundred, spread evenly over the picture (pixels of last frame's depth buffer).
+    /// They steer how strong a warp is, and nothing else: no shadow is lost where they are old, few, or wrong. None is fine.
+    pub visible_points: &'a [DVec3],
 }
 
 impl Scene<'_> {
     /// A scene of which only the bounds are known, and everything casts and receives.
     #[must_use]
     pub const fn within(bounds: Aabb) -> Self {
-        Self { casters: bounds, receivers: bounds, objects: &[], visible_depth: None }
+        Self { casters: bounds, receivers: bounds, objects: &[], visible_depth: None, visible_points: &[] }
     }
 
     pub(crate) fn validate(&self) -> Result<(), FitError> {

@@ -90,7 +90,7 @@ proptest! {
             if point.cmplt(bounds.min).any() || point.cmpgt(bounds.max).any() {
                 continue;
             }
-            let lit = antumbra_visible(filter, &frame.uniforms.views[0], &map, point.as_vec3(), normal);
+            let lit = antumbra_visible(frame.wgsl, &frame.uniforms.views[0], &map, point.as_vec3(), normal);
             prop_assert!(lit >= LIT, "{lit} at {point}, texel {:?}", frame.views[0].texel.world);
         }
     }

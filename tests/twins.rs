@@ -18,6 +18,7 @@ use antumbra::lab::gpu::{Gpu, read_depth};
 use antumbra::wgsl::{self, Bindings};
 use antumbra::{
     Aabb, Bias, Encoding, FitInput, Light, MapBudget, Pcf, Remix, Scene, ShadowFrame, ShadowTechnique, ViewUniforms,
+    WgslKey,
 };
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -286,7 +287,7 @@ fn check_visible(filter: Pcf, map: &DepthMap, case: &Case, view: &ViewUniforms, 
         bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
     let value = |look: &Lookup| antumbra_filter(filter, map, look);
     // The twin itself is the middle of the band.
-    let twin = antumbra_visible(filter, view, map, position, normal);
+    let twin = antumbra_visible(WgslKey { filter, ..WgslKey::default() }, view, map, position, normal);
     assert_eq!(twin.to_bits(), value(&look).to_bits(), "{case:?}");
     within("visible", shader, band(&look, uv, depth, value), 1.0, case, worst);
 }

@@ -70,7 +70,7 @@ fn every_item_has_the_prefix() {
         }
     }
     // What the generator adds.
-    let shader = Shader::parse(&wgsl::module(WgslKey { filter: Pcf::Point }, PLACES[0])).unwrap();
+    let shader = Shader::parse(&wgsl::module(WgslKey { filter: Pcf::Point, ..WgslKey::default() }, PLACES[0])).unwrap();
     for (_, variable) in shader.module.global_variables.iter() {
         assert!(prefixed(variable.name.as_deref().unwrap_or("")), "{variable:?}");
     }

@@ -8,12 +8,14 @@ use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
 use crate::frame::ShadowFrame;
 use crate::light_space::LightSpace;
-use crate::math::homography::STRONGEST;
+use crate::math::homography::{STRONGEST, WarpFrame};
 use crate::report::{Part, Why};
 use crate::scene::Aabb;
 use crate::warp::bend::Bend;
-use crate::warp::sight::Sight;
+use crate::warp::least_error::Predictor;
+use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
+use crate::warp::{Warp, lispsm, minimax, perspective, trapezoid};
 
 /// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera for
 /// next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of the
@@ -95,18 +97,43 @@ impl Fitter<'_> {
         }
     }
 
-    /// The window around what is in view, bent along the view by κλ = `strength`.
-    pub(crate) fn warped(&self, body: FocusBody, strength: f64, frame: &mut ShadowFrame) -> Layout {
-        let margin = rounding_margin(&body.vertices, self.input.origin);
-        let sight = Sight::of(&self.input.camera, self.travel, &body.vertices, self.input.origin);
-        let around = sight.frame();
-        let limit = self.strongest(around.extent, margin);
-        if strength > limit {
-            frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked: strength, limit });
+    /// The window around what is in view, bent by what a warp chooses; a guard limits it to what is predicted to be no worse than
+    /// uniform.
+    pub(crate) fn warped(&self, body: FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
+        let (camera, origin) = (&self.input.camera, self.input.origin);
+        let margin = rounding_margin(&body.vertices, origin);
+        // Choose an axis and a strength.
+        let sight = Sight::of(camera, self.travel, &body.vertices, origin);
+        let limit = |around: &WarpFrame| self.strongest(around.extent, margin);
+        let predictor =
+            |around: &WarpFrame| Predictor::of(camera, &body, &sight, around, self.input.scene.visible_points, origin);
+        let choice = match warp {
+            Warp::Uniform | Warp::Focused => Choice { frame: sight.frame(), strength: 0.0 },
+            Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
+            Warp::Trapezoidal { focus } => trapezoid::choose(camera, &sight, focus),
+            Warp::LightSpacePerspective => lispsm::choose(&sight),
+            Warp::Perspective { pull_back } => perspective::choose(camera, &sight, f64::from(pull_back)),
+            Warp::Minimax => minimax::choose(&sight, limit(&sight.frame())),
+            Warp::LeastError => predictor(&sight.frame()).choose(limit(&sight.frame())),
+        };
+        // Limit it to what texels and positions allow, and to what pays.
+        let (around, asked, limit) = (choice.frame, choice.strength, limit(&choice.frame));
+        let allowed = asked.min(limit);
+        if asked > limit {
+            frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked, limit });
         }
-        let strength = strength.min(limit);
+        let guarded = guard && warp.is_published();
+        let strength = if guarded { predictor(&around).guarded(allowed) } else { allowed };
+        if strength < allowed {
+            frame.leave_out(Part::Warp(0), Why::WarpDoesNotPay { asked: allowed, limit: strength });
+        }
+        // Bend, and lay the window: on the axis as published, else where it is smallest.
         let bend = Bend::new(&around, strength / around.extent);
-        let window = Window::least_area(sight.light, bend, &body.vertices, margin);
+        let window = if warp.is_published() && !guard {
+            Window::turned(sight.light, bend, around.axis, &body.vertices, margin)
+        } else {
+            Window::least_area(sight.light, bend, &body.vertices, margin)
+        };
         Layout { body, window, strength }
     }
 

@@ -37,6 +37,11 @@ pub struct Visible {
 }
 
 impl Visible {
+    /// What pixels show, row by row; those without geometry are passed over.
+    pub fn iter(&self) -> impl Iterator<Item = &Hit> {
+        self.hits.iter().flatten()
+    }
+
     /// Draws the scene from the camera at the size of its viewport.
     #[must_use]
     pub fn draw(model: &SceneModel, camera: &Camera, origin: DVec3) -> Self {

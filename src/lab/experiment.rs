@@ -13,8 +13,9 @@ use super::truth::Truth;
 use crate::error::FitError;
 use crate::frame::{ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
-use crate::remix::{Encoding, Remix, Stabilise, Warp};
+use crate::remix::{Encoding, Remix, Stabilise};
 use crate::technique::ShadowTechnique;
+use crate::warp::Warp;
 
 /// Which renderer is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,6 +103,7 @@ pub struct Studio<'a> {
     subject: &'a Subject,
     setting: Setting,
     scene: Prepared,
+    seen: Vec<glam::DVec3>,
 }
 
 /// The scene as the backend wants it.
@@ -152,7 +154,8 @@ impl<'a> Studio<'a> {
             ),
             Backend::Cpu => Prepared::Cpu(cpu::Visible::draw(&subject.model, &setting.camera, setting.origin)),
         };
-        Ok(Self { backend, subject, setting, scene })
+        let seen = setting.visible_points(subject);
+        Ok(Self { backend, subject, setting, scene, seen })
     }
 
     /// Fits a technique, draws it, and times every step; `repetitions` of each pass, medians.
@@ -160,7 +163,7 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// The technique refused its input, or the renderer failed.
     pub fn shoot(&mut self, technique: &dyn ShadowTechnique, side: u32, repetitions: u32) -> Result<Shot, RunError> {
-        let input = self.setting.input(self.subject, side);
+        let input = self.setting.input(self.subject, &self.seen, side);
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let fit_ns = median_fit_ns(|| technique.fit(&input).is_ok());
         match (&mut *self.backend, &self.scene) {
@@ -199,7 +202,7 @@ impl Studio<'_> {
         side: u32,
         repetitions: u32,
     ) -> Result<Option<Race>, RunError> {
-        let input = self.setting.input(self.subject, side);
+        let input = self.setting.input(self.subject, &self.seen, side);
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) = (&mut *self.backend, &self.scene) else {
             return Ok(None);
@@ -254,6 +257,11 @@ pub fn stage_names(remix: &Remix) -> [String; 3] {
     let warp = match remix.warp {
         Warp::Uniform => "uniform".to_owned(),
         Warp::Focused => "focused".to_owned(),
+        Warp::LeastError => "least error".to_owned(),
+        Warp::Trapezoidal { .. } => "trapezoidal".to_owned(),
+        Warp::LightSpacePerspective => "light-space perspective".to_owned(),
+        Warp::Perspective { .. } => "perspective".to_owned(),
+        Warp::Minimax => "minimax".to_owned(),
         Warp::Fixed { strength } => format!("strength {strength}"),
     };
     let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };

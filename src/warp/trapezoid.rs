@@ -25,12 +25,35 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use super::Focus;
+use super::sight::{Choice, Sight};
+use crate::camera::{Camera, Projection};
 pub use crate::math::homography::LINE_80_PERCENT;
 use crate::math::homography::{Homography, WarpFrame, kappa_for_line};
 
 /// Centre lines shorter than this share of the hull's diameter have no direction: view and light are parallel, and the map is
 /// uniform. At 0 the direction is rounding noise; at 1 every map is uniform. 1e-3 is a view within 0.06° of the light.
 const NO_DIRECTION: f64 = 1e-3;
+
+/// The published warp for a focus (E is what is in view, the light's post-perspective space its plane).
+pub(crate) fn choose(camera: &Camera, sight: &Sight, focus: Focus) -> Choice {
+    let (near, far) = sight.depth_range();
+    let beyond = match focus {
+        Focus::Share(share) => f64::from(share) * (far - near),
+        Focus::Distance(distance) => f64::from(distance),
+    };
+    // l runs through the middle of the picture.
+    let middle = camera.projection.middle();
+    let image = |depth: f64| {
+        let aside = match camera.projection {
+            Projection::Perspective { .. } => middle * depth,
+            Projection::Orthographic { .. } => middle,
+        };
+        sight.eye + sight.view * depth + sight.right * aside.x + sight.up * aside.y
+    };
+    let trapezoid = Trapezoid::around([image(near), image(far)], &sight.points, image(near + beyond), LINE_80_PERCENT);
+    Choice { frame: trapezoid.frame, strength: trapezoid.kappa * trapezoid.frame.extent }
+}
 
 /// A trapezoid around what is in view, as the light sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]

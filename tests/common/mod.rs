@@ -61,6 +61,7 @@ impl Inputs {
                 receivers: self.receivers,
                 objects: &[],
                 visible_depth: self.visible,
+                visible_points: &[],
             },
             map: MapBudget::one(self.side),
             origin: self.origin,
