@@ -8,7 +8,7 @@
 //! ```text
 //! (1)  E(κ) = (a1 − a0) ⟨W⟩ + λ/k √(1 + κ² m) ⟨W²⟩,   W = 1 + κu,  k = 1 + κλ,  m = (a0² + a0 a1 + a1²)/3
 //! (2)  ⟨f⟩ = (1 − τ) Σ rays ∫ f(u(ζ)) dζ + τ Σ samples f(u)
-//! (3)  reluctance: E(κ) is made dearer by a tenth of κλ / (1 + κλ)
+//! (3)  reluctance: E(κ) is made dearer by 0.15 κλ / (1 + κλ)
 //! ```
 //!
 //! The first summand of (1) is the side of a texel across the axis, the second the one along it, which slants with the side lines. The
@@ -34,16 +34,13 @@ use crate::math::homography::WarpFrame;
 /// hundredth and cost microseconds; half as many make it jump where a ray leaves the body.
 const RAYS: [u32; 2] = [8, 6];
 
-/// Most weight of the samples beside the body. At 1 a picture of one sunlit wall decides for everything that might come into view, at 0
-/// samples are not used. Measured: the mean error falls up to 1, the worst case is best near 0.8.
-const MOST_TRUST: f64 = 0.9;
-
-/// Samples inside the body at which half of that weight is given. Fewer trust single pixels; more ask for more samples than move the result.
+/// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
+/// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.
 const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per cent, strengths too strong
-/// by half cost twice that. Measured: 0.1 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
-const RELUCTANCE: f64 = 0.1;
+/// by half cost twice that. Measured: 0.15 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
+const RELUCTANCE: f64 = 0.15;
 
 /// The body's moments along a warp's axis, and what an evaluation of the error needs besides.
 #[derive(Clone, Debug)]
@@ -87,7 +84,7 @@ impl<'a> Predictor<'a> {
                 seen[2] += at * at;
             }
         }
-        let trust = MOST_TRUST * seen[0] / (seen[0] + ENOUGH_SAMPLES);
+        let trust = seen[0] / (seen[0] + ENOUGH_SAMPLES);
         let in_picture = [seen[1], seen[2]].map(|sum| sum / seen[0].max(1.0));
         // A body that no ray meets is a sliver: nothing is known of it, and (1, 1) wants no warp.
         let moments = [0, 1].map(|i| {
