@@ -1,68 +1,190 @@
-//! How much of the error of a map is its resolution.
-mod common;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+//! How much of a map's error is its resolution, on the shared cases (where `ANTUMBRA_SCENES` names the folder of scenes beside
+//! them): the library's masks beside those of ideal lookups in the same texels. `docs/EDGES.md` says what the tables mean.
+
+mod support;
 
 use antumbra::lab::bvh::Bvh;
 use antumbra::lab::comparison::Assignment;
 use antumbra::lab::cpu;
 use antumbra::lab::metrics::{Edges, Scores, mask_from_bytes, near_edges};
-use antumbra::lab::oracle::{AROUND, Compare, Oracle};
-use antumbra::lab::subject::Setting;
-use antumbra::lab::truth::TruthCache;
-use antumbra::{ShadowTechnique, techniques};
+use antumbra::lab::oracle::{AROUND, Compare, Oracle, placed_elsewhere};
+use antumbra::lab::subject::{Setting, Subject};
+use antumbra::lab::truth::{Truth, TruthCache};
+use antumbra::{Remix, ShadowFrame, ShadowTechnique, techniques};
+use glam::DVec2;
 
-fn shared_cases() -> Vec<PathBuf> {
-    let scenes = std::env::var("ANTUMBRA_SCENES").unwrap();
-    let folder = Path::new(&scenes).join("../cases");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
-    files.sort();
-    files
+/// One case, ready for both renderers.
+struct Place<'a> {
+    subject: &'a Subject,
+    setting: Setting,
+    truth: &'a Truth,
+    visible: cpu::Visible,
+    oracle: Oracle<'a>,
 }
 
-#[test]
-fn probe() {
-    for path in shared_cases() {
-        let assignment = Assignment::of_case(&path).expect("a legal case");
-        let case = assignment.cases[0].clone();
-        let subject = &assignment.subject;
-        let (truth, _) = TruthCache::default().get(&case, &subject.model, &|| {});
-        let setting = Setting::of(&case);
-        let t = Instant::now();
-        let bvh = Bvh::new(&subject.model);
-        let oracle = Oracle::new(&case, &truth, &bvh).unwrap();
-        let t_bvh = t.elapsed();
-        let visible = cpu::Visible::draw(&subject.model, &setting.camera, setting.origin);
-        let frame = techniques::fsm().fit(&setting.input(subject, 2048)).unwrap();
-        let t = Instant::now();
-        let image = cpu::render(subject, &visible, &frame, setting.origin);
-        let t_cpu = t.elapsed();
-        let t = Instant::now();
-        let ideal = oracle.mask(&frame, setting.origin, Compare::Plane);
-        let t_oracle = t.elapsed();
-        let surf = oracle.mask(&frame, setting.origin, Compare::Surface);
-        let mask = mask_from_bytes(&image.mask);
-        let (ours, best) = (Scores::new(&mask, &truth).unwrap(), Scores::new(&ideal, &truth).unwrap());
-        let near = near_edges(&truth, Edges::Centre);
-        println!("{} times bvh {t_bvh:?} cpu {t_cpu:?} oracle {t_oracle:?} texel {:?} radius {}", case.name, frame.views[0].texel.world, bvh.radius());
-        let p = |n: &str, s: &Scores| println!("   {n}: wrong {:.3}% wide leak {:.1e} false {:.1e} strict leak {:.1e} false {:.1e}", 100.0*s.wrong_center, s.leak_interior, s.false_interior, s.leak_interior_strict, s.false_interior_strict);
-        p("ours", &ours); p("plane ", &best); p("surf  ", &Scores::new(&surf, &truth).unwrap());
-        let mut hist = [[0u32; 26]; 2];
-        let mut hist_s = [[0u32; 26]; 2];
-        let mut surf_agrees = [0u32; 2];
-        let mut oracle_agrees = [0u32; 2];
-        for i in 0..mask.len() {
-            if !truth.valid[i] || near[i] || (mask[i] - truth.centre[i]).abs() <= 0.5 { continue; }
-            let leak = usize::from(mask[i] > 0.5);
-            hist[leak][oracle.lit_around(&frame, setting.origin, i, Compare::Plane).unwrap() as usize] += 1;
-            hist_s[leak][oracle.lit_around(&frame, setting.origin, i, Compare::Surface).unwrap() as usize] += 1;
-            surf_agrees[leak] += u32::from((surf[i] - truth.centre[i]).abs() > 0.5);
-            oracle_agrees[leak] += u32::from((ideal[i] - truth.centre[i]).abs() > 0.5);
-        }
-        println!("   valid {} false by lit count {:?} oracle agrees {}", ours.valid_pixels, hist[0], oracle_agrees[0]);
-        println!("   leak by lit count {:?} oracle agrees {}", hist[1], oracle_agrees[1]);
-        println!("   SURF false {:?} agrees {}", hist_s[0], surf_agrees[0]);
-        println!("   SURF leak {:?} agrees {}", hist_s[1], surf_agrees[1]);
-        println!("   genuine acne {:.1e} leak {:.1e}", f64::from(hist[0][AROUND as usize]) / ours.valid_pixels as f64, f64::from(hist[1][0]) / ours.valid_pixels as f64);
+impl Place<'_> {
+    fn fit(&self, technique: &Remix, side: u32) -> ShadowFrame {
+        technique.fit(&self.setting.input(self.subject, side)).expect("a legal case")
     }
+
+    /// The library's mask, from the software renderer.
+    fn mask(&self, frame: &ShadowFrame) -> Vec<f32> {
+        mask_from_bytes(&cpu::render(self.subject, &self.visible, frame, self.setting.origin).mask)
+    }
+
+    fn ideal(&self, frame: &ShadowFrame, compare: Compare) -> Vec<f32> {
+        self.oracle.mask(frame, self.setting.origin, compare)
+    }
+
+    /// Share of the valid pixels more than ½ off the centre truth.
+    fn wrong(&self, mask: &[f32]) -> f64 {
+        let wrong = (0..mask.len()).filter(|&pixel| is_wrong(mask, self.truth, pixel));
+        wrong.count() as f64 / self.truth.valid_count() as f64
+    }
+}
+
+fn is_wrong(mask: &[f32], truth: &Truth, pixel: usize) -> bool {
+    truth.valid[pixel] && (mask[pixel] - truth.centre[pixel]).abs() > 0.5
+}
+
+/// Runs `check` over the shared cases.
+fn over_cases(mut check: impl FnMut(&str, &Place)) {
+    for path in support::shared_cases() {
+        let assignment = Assignment::of_case(&path).expect("a legal case");
+        let (case, subject) = (&assignment.cases[0], &assignment.subject);
+        let (truth, _) = TruthCache::default().get(case, &subject.model, &|| {});
+        let bvh = Bvh::new(&subject.model);
+        let oracle = Oracle::new(case, &truth, &bvh).expect("directional light");
+        let setting = Setting::of(case);
+        let visible = cpu::Visible::draw(&subject.model, &setting.camera, setting.origin);
+        check(&case.name, &Place { subject, setting, truth: &truth, visible, oracle });
+    }
+}
+
+/// Most false shadow and leak of a focused map of 2048 texels away from strict edges and not explained by a texel, shares of
+/// the valid pixels: what is asked of acne and bleeding.
+const MOST_ACNE: f64 = 1e-4;
+const MOST_LEAK: f64 = 1e-3;
+
+/// Wrong pixels away from strict edges that no texel explains: false shadow where every surface within a texel of the receiver
+/// is lit, and leaks where the receiver's plane is in shadow all over within a texel.
+fn unexplained(place: &Place, frame: &ShadowFrame, mask: &[f32]) -> [f64; 2] {
+    let (truth, origin) = (place.truth, place.setting.origin);
+    let near = near_edges(truth, Edges::Centre);
+    let lit_around = |pixel, compare| place.oracle.lit_around(frame, origin, pixel, compare).expect("a valid pixel");
+    let interior: Vec<usize> = (0..mask.len()).filter(|&i| is_wrong(mask, truth, i) && !near[i]).collect();
+    let acne = |&&i: &&usize| truth.centre[i] > 0.5 && lit_around(i, Compare::Surface) == AROUND;
+    let leak = |&&i: &&usize| truth.centre[i] < 0.5 && lit_around(i, Compare::Plane) == 0;
+    let share = |count: usize| count as f64 / truth.valid_count() as f64;
+    [share(interior.iter().filter(acne).count()), share(interior.iter().filter(leak).count())]
+}
+
+/// What is wrong away from strict edges lies within a texel of what would make it right.
+#[test]
+fn what_is_wrong_away_from_edges_is_resolution() {
+    println!("Focused map, 2048 texels, software renderer. Shares of the valid pixels away from edges, in 1/10000.");
+    println!("library / ideal, on the plane / ideal, on the nearer of plane and receiver");
+    println!("| case | acne, strict | leak, strict | acne, area | leak, area | unexplained acne | unexplained leak |");
+    println!("|---|--:|--:|--:|--:|--:|--:|");
+    let mut broken = Vec::new();
+    over_cases(|name, place| {
+        let frame = place.fit(&techniques::fsm(), 2048);
+        let mask = place.mask(&frame);
+        let ideals = [Compare::Plane, Compare::Nearer].map(|compare| place.ideal(&frame, compare));
+        let scores = [&mask, &ideals[0], &ideals[1]].map(|mask| Scores::new(mask, place.truth).expect("a legal mask"));
+        let [acne, leak] = unexplained(place, &frame, &mask);
+        let three = |share: fn(&Scores) -> f64| scores.each_ref().map(|s| format!("{:.1}", 1e4 * share(s))).join(" / ");
+        println!(
+            "| {name} | {} | {} | {} | {} | {:.2} | {:.2} |",
+            three(|s| s.false_interior_strict),
+            three(|s| s.leak_interior_strict),
+            three(|s| s.false_interior),
+            three(|s| s.leak_interior),
+            1e4 * acne,
+            1e4 * leak
+        );
+        if acne > MOST_ACNE || leak > MOST_LEAK {
+            broken.push(format!("{name}: acne {acne:.1e}, leak {leak:.1e}"));
+        }
+    });
+    assert!(broken.is_empty(), "{broken:#?}");
+}
+
+/// Names how many placements of each map are averaged; more take longer.
+const PLACEMENTS_VARIABLE: &str = "ANTUMBRA_PLACEMENTS";
+
+/// Placements without that variable: fewer leave the mean to chance, more than the test's time is worth.
+const PLACEMENTS: u32 = 4;
+
+/// Sizes of maps, texels.
+const SIZES: [u32; 3] = [512, 1024, 2048];
+
+/// Parts of a texel by which a map is moved, −½ to ½: as fitted first, then evenly spread however many there are (the R2
+/// sequence: M. Roberts, *The unreasonable effectiveness of quasirandom sequences*, 2018).
+fn placement(index: u32) -> DVec2 {
+    let step = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+    let at = step * f64::from(index);
+    at - at.round()
+}
+
+/// Wrong shares over placements.
+struct Spread {
+    fitted: f64,
+    mean: f64,
+    least: f64,
+    most: f64,
+}
+
+impl Spread {
+    fn of(shares: &[f64]) -> Self {
+        Self {
+            fitted: shares[0],
+            mean: shares.iter().sum::<f64>() / shares.len() as f64,
+            least: shares.iter().copied().fold(f64::INFINITY, f64::min),
+            most: shares.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    fn percent(&self) -> String {
+        format!("{:.3} ({:.3}–{:.3})", 100.0 * self.mean, 100.0 * self.least, 100.0 * self.most)
+    }
+}
+
+/// Larger maps are better: not in each placement of their texels, but on average over placements.
+#[test]
+fn errors_fall_with_size_on_average_over_placements() {
+    let count = std::env::var(PLACEMENTS_VARIABLE).map_or(PLACEMENTS, |n| n.parse().expect("a number of placements"));
+    println!("Wrong pixels over {count} placements of the texels, percent: mean (least–most), software renderer.");
+    println!("| case | technique | 512 | 1024 | 2048 | ideal 512 | ideal 1024 | ideal 2048 |");
+    println!("|---|---|--:|--:|--:|--:|--:|--:|");
+    let mut broken = Vec::new();
+    over_cases(|name, place| {
+        let mut last: Option<ShadowFrame> = None;
+        for (technique, remix) in [("ssm", techniques::ssm()), ("fsm", techniques::fsm())] {
+            // A focused map of what is in view as a whole is the standard one.
+            let smallest = place.fit(&remix, SIZES[0]);
+            if last.is_some_and(|last| last.views == smallest.views) {
+                println!("| {name} | {technique} | as ssm | | | | | |");
+                break;
+            }
+            last = Some(smallest);
+            let spread = |side: u32, shares: &dyn Fn(&ShadowFrame) -> f64| {
+                let fitted = place.fit(&remix, side);
+                let placed = (0..count).map(|index| shares(&placed_elsewhere(&fitted, placement(index))));
+                Spread::of(&placed.collect::<Vec<f64>>())
+            };
+            let ours = SIZES.map(|side| spread(side, &|frame| place.wrong(&place.mask(frame))));
+            let ideal = SIZES.map(|side| spread(side, &|frame| place.wrong(&place.ideal(frame, Compare::Nearer))));
+            let columns: Vec<String> = ours.iter().chain(&ideal).map(Spread::percent).collect();
+            println!("| {name} | {technique} | {} |", columns.join(" | "));
+            if !ours.is_sorted_by(|coarse, fine| coarse.fitted > fine.fitted) {
+                let [ours, ideal] = [&ours, &ideal].map(|sizes| sizes.each_ref().map(|spread| 100.0 * spread.fitted));
+                println!("| {name} | {technique} | as fitted: {ours:.3?}, ideal {ideal:.3?} | | | | | |");
+            }
+            if !ours.is_sorted_by(|coarse, fine| coarse.mean > fine.mean) {
+                broken.push(format!("{name} {technique}: {:?}", ours.map(|spread| spread.mean)));
+            }
+        }
+    });
+    assert!(broken.is_empty(), "{broken:#?}");
 }
