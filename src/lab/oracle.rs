@@ -10,8 +10,8 @@
 //! bare plane is a poor thing to ask about; [`Compare`] has others.
 //!
 //! # References
-//! - Weiskopf & Ertl, *Shadow mapping based on dual depth layers*, 2003, and Dou et al., *Adaptive depth bias for shadow maps*,
-//!   2014 (comparing with the receiver's plane at the texel's centre).
+//! - Dou, Yan, Kerzner, Dai & Wyman, *Adaptive depth bias for shadow maps*, I3D 2014 (comparing with the receiver's plane at the
+//!   texel's centre).
 
 use std::collections::HashMap;
 
