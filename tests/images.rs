@@ -1,7 +1,9 @@
 //! Pictures against ray-traced truth, and the two renderers against each other, on the shared cases (where `ANTUMBRA_SCENES` names
 //! the folder of scenes beside them) and on built-in viewpoints.
 
-use std::path::{Path, PathBuf};
+mod support;
+
+use std::path::PathBuf;
 
 use antumbra::lab::case::Case;
 use antumbra::lab::comparison::Assignment;
@@ -10,23 +12,6 @@ use antumbra::lab::metrics::Scores;
 use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::TruthCache;
 use antumbra::{Encoding, Pcf, Remix, techniques};
-
-/// The shared case files; none, said aloud, where the variable is not set.
-fn shared_cases() -> Vec<PathBuf> {
-    let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") else {
-        println!("shared cases: skipped, ANTUMBRA_SCENES is not set");
-        return Vec::new();
-    };
-    let folder = Path::new(&scenes).join("../cases");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
-        .map(|entry| entry.expect("a readable entry").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-        .collect();
-    files.sort();
-    assert!(!files.is_empty(), "{} holds no case", folder.display());
-    files
-}
 
 /// Runs `check` over the shared cases and one built-in viewpoint a scene.
 fn over_cases(mut check: impl FnMut(&Assignment, &Case)) {
@@ -37,7 +22,7 @@ fn over_cases(mut check: impl FnMut(&Assignment, &Case)) {
         let case = assignment.cases[0].clone();
         check(&assignment, &case);
     }
-    for path in shared_cases() {
+    for path in support::shared_cases() {
         let assignment = Assignment::of_case(&path).expect("a legal case");
         let case = assignment.cases[0].clone();
         check(&assignment, &case);
@@ -57,7 +42,8 @@ fn scores(backend: &mut Backend, assignment: &Assignment, case: &Case, remix: &R
 /// Most interior false shadow (acne) and interior leak of a focused map of 2048 texels, shares of the valid pixels.
 ///
 /// They hold with the edges of `metrics`, which count shadows thinner than a pixel. With edges of the centre truth alone they do
-/// not: acne 1.2e-4 (columns-row), 3.4e-4 (treeline-dueling, treeline-ground), leak 1.3e-3 (treeline-ground).
+/// not: acne 1.2e-4 (columns-row), 3.4e-4 (treeline-dueling, treeline-ground), leak 1.3e-3 (treeline-ground);
+/// `tests/resolution.rs` shows how much of that is resolution.
 const MOST_ACNE: f64 = 1e-4;
 const MOST_LEAK: f64 = 1e-3;
 

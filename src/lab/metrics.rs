@@ -11,11 +11,13 @@
 //! | `wrong`, `wrong_center` | fraction with \|v − a\| > ½, \|v − c\| > ½ |
 //! | `leak_…`, `false_…` | `wrong_center` apart: light where there is none (v > c), shadow where there is none (v < c) |
 //! | `…_edge`, `…_interior` | the same apart: up to 2 px (Chebyshev) from an edge pixel, or further |
+//! | `…_interior_strict` | as `…_interior`, from strict edges alone |
 //! | `edge_center_px` | mean distance from the centre truth's shadow edges to the mask's, pixels |
 //!
 //! An *edge pixel* is a valid pixel that a shadow's edge passes through or beside: its area truth is strictly between 0 and
 //! 1, or a valid 4-neighbour has another centre truth. The first half matters for shadows thinner than a pixel,
-//! which the grid of centres may not see.
+//! which the grid of centres may not see. A *strict* edge pixel is one of the second half only: then a shadow between the
+//! centres has no edge, and a map that shows it is counted as acne.
 //!
 //! `edge_center_px` looks at pairs of 4-neighbours on one surface ([`Truth::joins`]) whose centre truths differ: the truth's
 //! edge lies half-way between them. The mask's edges lie between such pairs on opposite sides of ½, where the line
@@ -31,6 +33,15 @@ pub const EDGE_REACH_PX: u32 = 2;
 /// How far from a truth edge a mask edge is looked for, pixels; what is further off counts as this. Less would hide
 /// gross displacement, more would match edges of other shadows.
 pub const EDGE_SEARCH_PX: u32 = 8;
+
+/// What makes an edge pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// The area truth is strictly between 0 and 1, or a valid 4-neighbour has another centre truth.
+    Area,
+    /// A valid 4-neighbour has another centre truth (strict).
+    Centre,
+}
 
 /// Why a mask cannot be scored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +103,10 @@ pub struct Scores {
     pub false_edge: f64,
     /// Shadow where there is none, away from edges: acne.
     pub false_interior: f64,
+    /// Light where there is none, away from strict edges ([`Edges::Centre`]); at least `leak_interior`.
+    pub leak_interior_strict: f64,
+    /// Shadow where there is none, away from strict edges ([`Edges::Centre`]); at least `false_interior`.
+    pub false_interior_strict: f64,
     /// The valid pixels in three parts of equal count by eye depth, nearest first.
     pub thirds: [Third; 3],
 }
@@ -129,11 +144,11 @@ impl Scores {
         let (rmse, mae) = errors(mask, &truth.area, &valid);
         let (floor_rmse, floor_mae) = errors(&truth.centre, &truth.area, &valid);
         // Compare with the centre truth, by sign and place.
-        let near_edge = near_edges(truth);
-        let wrong_where = |leak: bool, edge: bool| {
+        let (near_edge, near_strict) = (near_edges(truth, Edges::Area), near_edges(truth, Edges::Centre));
+        let wrong_where = |leak: bool, near: &[bool], edge: bool| {
             let wrong = |pixel: usize| {
                 let error = mask[pixel] - truth.centre[pixel];
-                error.abs() > HALF && (error > 0.0) == leak && near_edge[pixel] == edge
+                error.abs() > HALF && (error > 0.0) == leak && near[pixel] == edge
             };
             fraction(&valid, wrong)
         };
@@ -147,10 +162,12 @@ impl Scores {
             wrong: fraction(&valid, |pixel| (mask[pixel] - truth.area[pixel]).abs() > HALF),
             wrong_center: fraction(&valid, |pixel| (mask[pixel] - truth.centre[pixel]).abs() > HALF),
             edge_center_px: edge_displacement(mask, truth),
-            leak_edge: wrong_where(true, true),
-            leak_interior: wrong_where(true, false),
-            false_edge: wrong_where(false, true),
-            false_interior: wrong_where(false, false),
+            leak_edge: wrong_where(true, &near_edge, true),
+            leak_interior: wrong_where(true, &near_edge, false),
+            false_edge: wrong_where(false, &near_edge, true),
+            false_interior: wrong_where(false, &near_edge, false),
+            leak_interior_strict: wrong_where(true, &near_strict, false),
+            false_interior_strict: wrong_where(false, &near_strict, false),
             thirds: thirds(mask, truth, valid),
         })
     }
@@ -249,11 +266,12 @@ fn thirds(mask: &[f32], truth: &Truth, mut valid: Vec<usize>) -> [Third; 3] {
     })
 }
 
-/// Marks the pixels up to [`EDGE_REACH_PX`] from an edge pixel.
-fn near_edges(truth: &Truth) -> Vec<bool> {
+/// Marks the pixels up to [`EDGE_REACH_PX`] from an edge pixel, valid or not.
+#[must_use]
+pub fn near_edges(truth: &Truth, edges: Edges) -> Vec<bool> {
     let (width, height) = (truth.width as usize, truth.height as usize);
-    let mut edge: Vec<bool> =
-        (0..width * height).map(|i| truth.valid[i] && truth.area[i] > 0.0 && truth.area[i] < 1.0).collect();
+    let cut = |i: usize| edges == Edges::Area && truth.valid[i] && truth.area[i] > 0.0 && truth.area[i] < 1.0;
+    let mut edge: Vec<bool> = (0..width * height).map(cut).collect();
     let mut compare = |a: usize, b: usize| {
         if truth.valid[a] && truth.valid[b] && truth.centre[a] != truth.centre[b] {
             (edge[a], edge[b]) = (true, true);

@@ -9,6 +9,7 @@ pub mod files;
 pub mod gltf;
 pub mod gpu;
 pub mod metrics;
+pub mod oracle;
 pub mod projection;
 pub mod raster;
 pub mod report;

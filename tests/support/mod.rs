@@ -1,6 +1,8 @@
 //! What several test files need: an adapter or a stated reason to do without, and a small scene.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+use std::path::{Path, PathBuf};
+
 use antumbra::lab::gpu::Gpu;
 use antumbra::lab::scene::{Cutout, SOLID, SceneModel};
 use antumbra::{Aabb, Camera};
@@ -132,4 +134,21 @@ fn is_hole(model: &SceneModel, triangle: usize, u: f64, v: f64) -> bool {
     let texel = |t: f64, side: u32| ((t.rem_euclid(1.0) * f64::from(side)) as u32).min(side - 1);
     let alpha = cutout.alpha[(texel(at.y, cutout.height) * cutout.width + texel(at.x, cutout.width)) as usize];
     f32::from(alpha) / 255.0 < cutout.cutoff
+}
+
+/// The shared case files; none, said aloud, where `ANTUMBRA_SCENES` is not set.
+pub(crate) fn shared_cases() -> Vec<PathBuf> {
+    let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") else {
+        println!("shared cases: skipped, ANTUMBRA_SCENES is not set");
+        return Vec::new();
+    };
+    let folder = Path::new(&scenes).join("../cases");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.expect("a readable entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .collect();
+    files.sort();
+    assert!(!files.is_empty(), "{} holds no case", folder.display());
+    files
 }

@@ -84,6 +84,8 @@ fn wrong_pixels_further_than_the_reach_are_interior() {
     let one = 1.0 / (16.0 * 12.0);
     let found = [scores.leak_interior, scores.leak_edge, scores.false_interior, scores.false_edge];
     assert_eq!(found, [one; 4]);
+    // Edges of the centre truth are all there is here.
+    assert_eq!([scores.leak_interior_strict, scores.false_interior_strict], [one; 2]);
 }
 
 #[test]
@@ -95,6 +97,8 @@ fn a_shadow_thinner_than_a_pixel_has_an_edge_too() {
     let scores = scores(&mask, &truth);
     assert_eq!((scores.false_edge, scores.false_interior), (1.0 / 81.0, 0.0));
     assert_eq!(scores.edge_center_px, None, "the centre truth has no edge");
+    // Strictly read there is no edge at all: the same pixel is interior.
+    assert_eq!((scores.false_interior_strict, scores.leak_interior_strict), (1.0 / 81.0, 0.0));
 }
 
 #[test]
