@@ -192,8 +192,11 @@ fn page(measured: &[Measured], meta: &[(&str, &str)], took: Duration) -> Result<
     Ok(text)
 }
 
+/// A ratio of a race.
+type Ratio = fn(&Race) -> f64;
+
 /// The columns of the table of races: heading, and ratio.
-const RATIOS: [(&str, fn(&Race) -> f64); 6] = [
+const RATIOS: [(&str, Ratio); 6] = [
     ("casters", |race| race.casters_ratio),
     ("shaded", |race| race.receivers_ratio),
     ("bare", |race| race.receivers_bare_ratio),
@@ -221,7 +224,7 @@ fn races(measured: &[Measured]) -> String {
             let _ = writeln!(text, "| {} | {case} | {size} | {cells} |", scene.scene);
         }
     }
-    let all = |ratio: fn(&Race) -> f64| -> Vec<f64> {
+    let all = |ratio: Ratio| -> Vec<f64> {
         measured.iter().flat_map(|scene| &scene.races).map(|race| ratio(&race.2)).collect()
     };
     let medians = RATIOS.map(|(_, ratio)| format!("**{:.3}**", median_of(all(ratio)))).join(" | ");
