@@ -4,7 +4,7 @@
 //! `-- --quick` looks at one viewpoint a scene at half size, into `target/work_precision` instead.
 //!
 //! Beside every map size stands what the same passes cost written by hand (a depth pass with one matrix, a receiver with one
-//! comparison sample and a constant bias), drawn in turns in the same run.
+//! comparison sample and a constant bias), drawn in turns in the same run; the receiver with three yardsticks.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -168,31 +168,7 @@ fn page(measured: &[Measured], meta: &[(&str, &str)], took: Duration) -> Result<
     }
     let _ = writeln!(text, "- took: {:.0} s\n", took.as_secs_f64());
     let _ = writeln!(text, "## What the library adds to the least that can be done\n");
-    let _ = writeln!(
-        text,
-        "Medians of {TURNS} ratios, each of neighbours in time: a caster pass against a depth pass with one matrix, a receiver pass \
-         (`fsm`, hardware 2×2, automatic bias) against one matrix, one comparison sample and a constant bias, all written by hand. \
-         Both receivers shade what arrives with Lambert's cosine, for which an engine has the normal at hand.\n"
-    );
-    let _ = writeln!(
-        text,
-        "| scene | case | size | casters, library / by hand | receivers, library / by hand |\n|---|---|--:|--:|--:|"
-    );
-    for scene in measured {
-        for (case, size, race) in &scene.races {
-            let (casters, receivers) = (race.casters_ratio, race.receivers_ratio);
-            let _ = writeln!(text, "| {} | {case} | {size} | {casters:.3} | {receivers:.3} |", scene.scene);
-        }
-    }
-    let ratios = |ratio: fn(&Race) -> f64| {
-        median_of(measured.iter().flat_map(|scene| &scene.races).map(|race| ratio(&race.2)).collect())
-    };
-    let _ = writeln!(
-        text,
-        "| all | median | | **{:.3}** | **{:.3}** |\n",
-        ratios(|race| race.casters_ratio),
-        ratios(|race| race.receivers_ratio)
-    );
+    text.push_str(&races(measured));
     for scene in measured {
         let _ = writeln!(text, "## {}\n\n![error and time](work_precision-{}.svg)\n", scene.scene, scene.scene);
         let columns = [
@@ -214,6 +190,52 @@ fn page(measured: &[Measured], meta: &[(&str, &str)], took: Duration) -> Result<
     }
     text.push_str(BIAS);
     Ok(text)
+}
+
+/// A ratio of a race.
+type Ratio = fn(&Race) -> f64;
+
+/// The columns of the table of races: heading, and ratio.
+const RATIOS: [(&str, Ratio); 6] = [
+    ("casters", |race| race.casters_ratio),
+    ("shaded", |race| race.receivers_ratio),
+    ("bare", |race| race.receivers_bare_ratio),
+    ("bare, matrix at vertices", |race| race.receivers_vertex_ratio),
+    ("whole, shaded", |race| race.whole_ratio),
+    ("whole, bare", |race| race.whole_bare_ratio),
+];
+
+/// The library beside what is written by hand.
+fn races(measured: &[Measured]) -> String {
+    let mut text = format!(
+        "Library / by hand, medians of {TURNS} ratios, each of neighbours in time. Casters: against a depth pass with one matrix. \
+         Receivers (`fsm`, hardware 2×2, automatic bias, in two stages as `compare`, `mask` and `plug_in` draw them: \
+         `antumbra_place` at vertices, `antumbra_lit` at fragments) against one matrix, one comparison sample and a constant bias:\n\n\
+         - *shaded*: both sides shade what arrives with Lambert's cosine, for which an engine has the normal at hand;\n\
+         - *bare*: neither side shades, and by hand nobody reads a normal;\n\
+         - *bare, matrix at vertices*: as bare, with the matrix by hand moved to the vertex stage as well;\n\
+         - *whole*: the library in one stage, `antumbra_visibility` at fragments, which smooth normals on large triangles need.\n\n"
+    );
+    let headings = RATIOS.map(|(heading, _)| heading).join(" | ");
+    let _ = writeln!(text, "| scene | case | size | {headings} |\n|---|---|--:|{}", "--:|".repeat(RATIOS.len()));
+    for scene in measured {
+        for (case, size, race) in &scene.races {
+            let cells = RATIOS.map(|(_, ratio)| format!("{:.3}", ratio(race))).join(" | ");
+            let _ = writeln!(text, "| {} | {case} | {size} | {cells} |", scene.scene);
+        }
+    }
+    let all = |ratio: Ratio| -> Vec<f64> {
+        measured.iter().flat_map(|scene| &scene.races).map(|race| ratio(&race.2)).collect()
+    };
+    let medians = RATIOS.map(|(_, ratio)| format!("**{:.3}**", median_of(all(ratio)))).join(" | ");
+    let _ = writeln!(text, "| all | median | | {medians} |");
+    let ranges = RATIOS.map(|(_, ratio)| {
+        let ratios = all(ratio);
+        let (least, most) = (ratios.iter().copied().reduce(f64::min), ratios.iter().copied().reduce(f64::max));
+        format!("{:.3} to {:.3}", least.unwrap_or(f64::NAN), most.unwrap_or(f64::NAN))
+    });
+    let _ = writeln!(text, "| all | range | | {} |\n", ranges.join(" | "));
+    text
 }
 
 /// What the numbers do not say.

@@ -49,7 +49,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     maps.prepare(&engine.queue, &frame)?;
     let uniforms = EngineUniforms {
         clip_from_world: (clip_from_view * world_from_view.inverse()).as_mat4(),
-        eye: camera.eye().as_vec3().extend(1.0),
         to_sun: (-travel).as_vec3().extend(0.0),
     };
     engine.queue.write_buffer(&engine.uniforms, 0, bytemuck::bytes_of(&uniforms));
@@ -103,7 +102,6 @@ fn reversed_infinite(fov_y: f64, aspect: f64, near: f64) -> DMat4 {
 #[repr(C)]
 struct EngineUniforms {
     clip_from_world: Mat4,
-    eye: Vec4,
     to_sun: Vec4,
 }
 

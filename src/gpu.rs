@@ -98,7 +98,7 @@ impl ShadowMaps {
         let uniforms = lit_uniforms(device, label);
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label,
-            entries: &layout_entries(key, 0, wgpu::ShaderStages::FRAGMENT),
+            entries: &layout_entries(key, 0, wgpu::ShaderStages::VERTEX_FRAGMENT),
         });
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label,
@@ -210,7 +210,7 @@ impl ShadowMaps {
         &self.layout
     }
 
-    /// What `antumbra_visibility` reads, for shader text made with `Bindings { group, first: 0 }`.
+    /// What the receivers' functions read, in vertex and fragment stages, for shader text made with `Bindings { group, first: 0 }`.
     #[must_use]
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bind_group
@@ -281,7 +281,7 @@ pub fn depth_stencil_state() -> wgpu::DepthStencilState {
 }
 
 /// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's own:
-/// uniforms, map, comparison sampler.
+/// uniforms, map, comparison sampler. `antumbra_place` needs them where it is called: vertices as well as fragments.
 #[must_use]
 pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 3] {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding: first + binding, visibility, ty, count: None };

@@ -10,6 +10,22 @@
 //!
 //! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked at,
 //! `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
+//!
+//! The same in two stages, for affine maps (uniform ones; see [`MapShape`]) and engines that want the cheapest fragments:
+//!
+//! ```wgsl
+//! fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup   // in the vertex stage
+//! fn antumbra_lit(look: AntumbraLookup) -> f32                          // in the fragment stage
+//! ```
+//!
+//! `AntumbraLookup` has the members `uv: vec2f`, `depth: f32` and `slope: vec2f`, in this order; carry `uv` and `depth` from
+//! stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`] and [`Pcf::Box5x5`] (the other
+//! filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
+//!
+//! Kind of promise: exact, up to rounding, where all vertices of a triangle are given one normal, because all members are then
+//! linear in position (`slope` is constant). With smooth normals the bias is interpolated: near enough on triangles that are
+//! small beside the curvature, too little across large ones, where acne may show; those take `antumbra_visibility`. Choose the
+//! side that is looked at from the eye position; all vertices of a face then agree.
 
 use core::fmt::Write as _;
 
@@ -69,7 +85,18 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
 
-/// The whole text for an engine's shader: library, bindings, and `antumbra_visibility`.
+/// The lookup in two stages, for affine maps: what is linear in position can be computed at vertices.
+const TWO_STAGES: &str = "
+fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup {
+    return antumbra_lookup(antumbra_uniforms.view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH);
+}
+
+fn antumbra_lit(look: AntumbraLookup) -> f32 {
+    return antumbra_filter(antumbra_map, antumbra_compare, look);
+}
+";
+
+/// The whole text for an engine's shader: library, bindings, `antumbra_visibility`, and the same in two stages.
 ///
 /// Cold path: call it when options change, not per frame.
 #[must_use]
@@ -91,6 +118,9 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
          \x20   return antumbra_visible(antumbra_uniforms.view, antumbra_map, antumbra_compare, position, normal);\n\
          }}\n"
     );
+    if key.shape == MapShape::Affine {
+        text.push_str(TWO_STAGES);
+    }
     text
 }
 

@@ -292,6 +292,8 @@ fn races_are_run() {
     let renderer = Renderer::new(&stage.gpu, frame.wgsl);
     let race = renderer.race(&stage.gpu, &stage.scene, &camera, &frame, &maps, 11).unwrap();
     eprintln!("{} ({}): {race:?}", stage.gpu.adapter(), stage.gpu.backend());
-    assert!(race.casters_ratio > 0.2 && race.casters_ratio < 5.0, "{race:?}");
-    assert!(race.receivers_ratio > 0.2 && race.receivers_ratio < 5.0, "{race:?}");
+    let receivers = [race.receivers_ratio, race.receivers_bare_ratio, race.receivers_vertex_ratio];
+    for ratio in [race.casters_ratio, race.whole_ratio, race.whole_bare_ratio].into_iter().chain(receivers) {
+        assert!(ratio > 0.2 && ratio < 5.0, "{race:?}");
+    }
 }

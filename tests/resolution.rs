@@ -24,7 +24,7 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn fit(&self, technique: &Remix, side: u32) -> ShadowFrame {
-        technique.fit(&self.setting.input(self.subject, side)).expect("a legal case")
+        technique.fit(&self.setting.input(self.subject, &[], side)).expect("a legal case")
     }
 
     /// The library's mask, from the software renderer.

@@ -56,7 +56,8 @@ struct Outcome {
     clip: Vec4,
     tap: f32,
     row: f32,
-    spare: [f32; 2],
+    lit: f32,
+    spare: f32,
 }
 
 /// `SplitMix64`: numbers without a dependency.
@@ -129,6 +130,7 @@ fn compare(gpu: &Gpu, filter: Pcf, side: u32) -> Worst {
         check_filters(filter, &map, case, outcome, &mut worst);
         check_visible(filter, &map, case, &case.view, outcome.visible, &mut worst);
         check_visible(filter, &map, case, &frames[0].uniforms.views[0], outcome.visibility, &mut worst);
+        check_visible(filter, &map, case, &frames[0].uniforms.views[0], outcome.lit, &mut worst);
     }
     // Bounds that doubt everything would prove nothing.
     assert!(worst.doubtful * 8 < 3 * CASES, "{worst:?}");

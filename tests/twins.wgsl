@@ -23,7 +23,9 @@ struct Outcome {
     clip: vec4f,
     tap: f32,
     row: f32,
-    spare: vec2f,
+    // The lookup in two stages.
+    lit: f32,
+    spare: f32,
 }
 
 @group(0) @binding(0) var<storage, read> cases: array<Case>;
@@ -45,6 +47,7 @@ fn run(@builtin(global_invocation_id) id: vec3u) {
     out.filtered = antumbra_filter(antumbra_map, antumbra_compare, given);
     out.visible = antumbra_visible(view, antumbra_map, antumbra_compare, case_.position.xyz, case_.normal.xyz);
     out.visibility = antumbra_visibility(case_.position.xyz, case_.normal.xyz, 1.0);
+    out.lit = antumbra_lit(antumbra_place(case_.position.xyz, case_.normal.xyz));
     let matrix = mat4x4f(view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render);
     out.clip = antumbra_caster(matrix, case_.position.xyz);
     out.tap = tap(given, case_.slope_offset.zw);

@@ -17,7 +17,7 @@ fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
     })
 }
 
-/// An engine's shader around `antumbra_visibility`, with names that an engine would choose.
+/// An engine's shader around `antumbra_visibility` and the same in two stages, with names that an engine would choose.
 fn host(key: WgslKey, bindings: Bindings) -> String {
     let engine = "
         struct View { clip_from_world: mat4x4f, eye: vec4f }
@@ -37,6 +37,14 @@ fn host(key: WgslKey, bindings: Bindings) -> String {
         @fragment fn fragment(in: Fragment) -> @location(0) vec4f {
             let visible = antumbra_visibility(in.position, normalize(in.normal), distance(view.eye.xyz, in.position));
             return filter_colour(lookup(Lookup(in.position.xy))) * visible;
+        }
+        struct Placed { @builtin(position) clip: vec4f, @location(0) place: vec3f, @location(1) @interpolate(flat) slope: vec2f }
+        @vertex fn placing(@location(0) position: vec3f, @location(1) normal: vec3f) -> Placed {
+            let look = antumbra_place(position, normal);
+            return Placed(view.clip_from_world * vec4f(position, 1.0), vec3f(look.uv, look.depth), look.slope);
+        }
+        @fragment fn placed(in: Placed) -> @location(0) vec4f {
+            return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
         }";
     wgsl::module(key, bindings) + engine
 }
@@ -117,7 +125,7 @@ fn no_derivatives_and_no_pointers() {
 #[test]
 fn one_lookup_is_straight_code() {
     for key in WgslKey::all() {
-        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(&["fragment"]).unwrap();
+        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(&["fragment", "placing", "placed"]).unwrap();
         for (_, ty) in shader.module.types.iter() {
             assert!(!matches!(ty.inner, TypeInner::Array { .. } | TypeInner::BindingArray { .. }), "{key:?}: {ty:?}");
         }
@@ -157,6 +165,13 @@ fn links_into_a_host_shader() {
             // A caster alone needs no map.
             let caster = shader.keep(&["caster"]).unwrap();
             assert_eq!(caster.module.global_variables.len(), 1, "{key:?}");
+            // In two stages, vertices read the uniforms and no map, and fragments the map and no uniforms.
+            let globals = |entry: &str| -> Vec<_> {
+                let kept = shader.keep(&[entry]).unwrap();
+                kept.module.global_variables.iter().filter_map(|(_, variable)| variable.name.clone()).collect()
+            };
+            assert_eq!(globals("placing"), ["antumbra_uniforms", "view"], "{key:?}");
+            assert_eq!(globals("placed"), ["antumbra_map", "antumbra_compare"], "{key:?}");
         }
     }
 }
@@ -193,7 +208,8 @@ fn composes_unchanged_under_naga_oil() {
 fn converts_to_other_languages() {
     for (key, _, library) in libraries() {
         let linked = Shader::parse(&host(key, PLACES[0])).unwrap();
-        for shader in [&library, &linked.keep(&["fragment"]).unwrap(), &linked.keep(&["vertex"]).unwrap()] {
+        let stages = ["fragment", "vertex", "placing", "placed"].map(|entry| linked.keep(&[entry]).unwrap());
+        for shader in std::iter::once(&library).chain(&stages) {
             assert_eq!(shader.spirv().unwrap()[0], 0x0723_0203, "{key:?}");
             assert!(shader.hlsl().unwrap().len() > 100, "{key:?}");
             assert!(shader.msl().unwrap().starts_with("// language: metal"), "{key:?}");
@@ -206,6 +222,10 @@ fn converts_to_other_languages() {
             let textures: Vec<_> = fragment.samplers.iter().map(|(_, texture)| texture.as_str()).collect();
             assert!(textures.contains(&"antumbra_map") && textures.contains(&"map"), "{key:?}: {textures:?}");
             assert!(fragment.blocks.iter().any(|(_, block)| block == "antumbra_uniforms"), "{key:?}");
+            let placing = linked.glsl(version, "placing").unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            assert!(placing.samplers.is_empty(), "{key:?}: {:?}", placing.samplers);
+            let placed = linked.glsl(version, "placed").unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            assert!(placed.blocks.is_empty() && placed.samplers.len() == 1, "{key:?}: {:?}", placed.blocks);
         }
     }
 }
@@ -257,14 +277,15 @@ fn pipelines_accept_the_layouts() {
         // The library's own group, and its entries behind seven of the engine's in one group.
         let own = wgsl::module(key, Bindings { group: 0, first: 0 });
         let merged = wgsl::module(key, Bindings { group: 0, first: 7 });
-        let entries = gpu::layout_entries(key, 7, wgpu::ShaderStages::FRAGMENT);
+        let entries = gpu::layout_entries(key, 7, wgpu::ShaderStages::VERTEX_FRAGMENT);
         let layout =
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
         let entries = maps.bind_entries(7);
         let _ =
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         for (text, layout) in [(own, maps.bind_group_layout()), (merged, &layout)] {
-            make_pipeline(&device, &text, layout, maps.caster_layout());
+            make_pipeline(&device, &text, layout, maps.caster_layout(), ["vertex", "fragment"]);
+            make_pipeline(&device, &text, layout, maps.caster_layout(), ["placing", "placed"]);
         }
     }
     drop(queue);
@@ -275,6 +296,7 @@ fn make_pipeline(
     text: &str,
     maps: &gpu::wgpu::BindGroupLayout,
     casters: &gpu::wgpu::BindGroupLayout,
+    [vertex, fragment]: [&str; 2],
 ) {
     use gpu::wgpu;
     let engine = "
@@ -284,6 +306,14 @@ fn make_pipeline(
         }
         @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
             return vec4f(antumbra_visibility(at.xyz, vec3f(0.0, 1.0, 0.0), 1.0));
+        }
+        struct Placed { @builtin(position) clip: vec4f, @location(0) place: vec3f, @location(1) @interpolate(flat) slope: vec2f }
+        @vertex fn placing(@location(0) position: vec3f) -> Placed {
+            let look = antumbra_place(position, vec3f(0.0, 1.0, 0.0));
+            return Placed(antumbra_caster(clip_from_render, position), vec3f(look.uv, look.depth), look.slope);
+        }
+        @fragment fn placed(in: Placed) -> @location(0) vec4f {
+            return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
         }";
     let source = wgpu::ShaderSource::Wgsl([text, engine].concat().into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
@@ -298,7 +328,7 @@ fn make_pipeline(
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("vertex"),
+            entry_point: Some(vertex),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: 12,
@@ -311,7 +341,7 @@ fn make_pipeline(
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fragment"),
+            entry_point: Some(fragment),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
         }),

@@ -344,7 +344,7 @@ mod tests {
         let bvh = Bvh::new(&subject.model);
         let setting = Setting::of(case);
         let remix = Remix { encoding: Encoding::Depth(filter), ..techniques::fsm() };
-        let frame = remix.fit(&setting.input(subject, side)).unwrap();
+        let frame = remix.fit(&setting.input(subject, &[], side)).unwrap();
         let mask = Oracle::new(case, &truth, &bvh).unwrap().mask(&frame, setting.origin, compare);
         Scores::new(&mask, &truth).unwrap()
     }
@@ -383,7 +383,7 @@ mod tests {
         let truth = Truth::trace(&case, &subject.model, &|| {});
         let bvh = Bvh::new(&subject.model);
         let setting = Setting::of(&case);
-        let frame = techniques::fsm().fit(&setting.input(&subject, 64)).unwrap();
+        let frame = techniques::fsm().fit(&setting.input(&subject, &[], 64)).unwrap();
         let oracle = Oracle::new(&case, &truth, &bvh).unwrap();
         let on_wall: Vec<usize> =
             (0..truth.valid.len()).filter(|&pixel| truth.valid[pixel] && truth.triangle[pixel] >= 2).collect();
@@ -406,7 +406,7 @@ mod tests {
     fn a_frame_placed_elsewhere_draws_and_reads_the_same_texels() {
         let (subject, case) = (scene(&[GROUND]), case(DVec3::new(0.4, -1.0, 0.3)));
         let setting = Setting::of(&case);
-        let fitted = techniques::fsm().fit(&setting.input(&subject, 256)).unwrap();
+        let fitted = techniques::fsm().fit(&setting.input(&subject, &[], 256)).unwrap();
         let by = DVec2::new(0.25, -0.5);
         let moved = placed_elsewhere(&fitted, by);
         let at = glam::Vec3::new(-1.0, -6.5, -12.0);

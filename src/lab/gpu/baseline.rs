@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3};
 
 use super::clock::{Clock, Stamps, Stopwatch, median};
-use super::pipelines::{self, Pair};
+use super::pipelines::{self, Host, Pair};
 use super::render::Shot;
 use super::{Gpu, GpuFailure, GpuScene, Renderer};
 use crate::camera::Camera;
@@ -13,10 +13,11 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The library's passes beside passes written by hand, drawn turn by turn in the same picture.
 ///
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
-/// sample and a constant bias. Both draw the same triangles into targets of the same size, and both receivers shade what
-/// arrives with Lambert's cosine: without a use for the normal a driver takes it out of the vertex stage, and the race would
-/// compare vertex stages. Every repetition times all four, in alternating order, and gives two ratios; the medians of those
-/// are robust against other work on the machine.
+/// sample and a constant bias, in three hosts: *bare* (nobody reads a normal), *shaded* (both sides shade what arrives with
+/// Lambert's cosine, as engines do, and need the normal for it) and *at vertices* (its matrix, too, is left to the vertex
+/// stage). Both sides draw the same triangles into targets of the same size. Every repetition times all of them, in
+/// alternating order, those of a ratio one after the other; the medians of the ratios are robust against other work on the
+/// machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
     /// Library's caster pass, median, milliseconds.
@@ -25,14 +26,50 @@ pub struct Race {
     pub casters_by_hand_ms: f64,
     /// Median of the ratios library / by hand.
     pub casters_ratio: f64,
-    /// Library's receiver pass, median, milliseconds.
+    /// Library's receiver pass as [`Renderer::render`] draws it, median, milliseconds.
     pub receivers_ms: f64,
-    /// Receiver pass by hand, median, milliseconds.
+    /// Bare receiver pass by hand, median, milliseconds.
     pub receivers_by_hand_ms: f64,
-    /// Median of the ratios library / by hand.
+    /// Median of the ratios library / by hand, both shaded.
     pub receivers_ratio: f64,
+    /// The same, both bare of shading: by hand nobody reads a normal, the library does for its bias.
+    pub receivers_bare_ratio: f64,
+    /// The same, with the matrix of the pass by hand moved to the vertex stage.
+    pub receivers_vertex_ratio: f64,
+    /// `antumbra_visibility` at each fragment / by hand, both shaded.
+    pub whole_ratio: f64,
+    /// The same, both bare of shading.
+    pub whole_bare_ratio: f64,
     /// The clock.
     pub clock: Clock,
+}
+
+/// What is timed; neighbours are compared.
+#[derive(Clone, Copy)]
+enum Entrant {
+    Casters,
+    CastersByHand,
+    Whole,
+    BareByHand,
+    Receivers,
+    VertexByHand,
+    Shaded,
+    ShadedByHand,
+    WholeShaded,
+}
+
+impl Entrant {
+    const ALL: [Self; 9] = [
+        Self::Casters,
+        Self::CastersByHand,
+        Self::Whole,
+        Self::BareByHand,
+        Self::Receivers,
+        Self::VertexByHand,
+        Self::Shaded,
+        Self::ShadedByHand,
+        Self::WholeShaded,
+    ];
 }
 
 impl Renderer {
@@ -49,116 +86,132 @@ impl Renderer {
         maps: &ShadowMaps,
         repetitions: u32,
     ) -> Result<Race, GpuFailure> {
-        // Draw both once: whoever comes first pays for the caches.
+        // Draw all once: whoever comes first pays for the caches.
         let shot = Shot::new(self, gpu, scene, camera, frame, maps)?;
-        let by_hand = ByHand::new(gpu, self, &shot, maps);
+        let track = Track { entries: Entries::new(gpu, self, &shot, maps), renderer: self, maps, shot };
         let stopwatch = Stopwatch::new(gpu);
-        stopwatch.time(|encoder, _| shot.depth_pass(encoder))?;
+        stopwatch.time(|encoder, _| track.shot.depth_pass(encoder))?;
         let mut runs = Runs::default();
-        Self::turn(&stopwatch, &shot, &by_hand, maps, true)?;
+        track.turn(&stopwatch, true)?;
         // Take turns.
         for repetition in 0..repetitions.max(1) {
-            runs.push(Self::turn(&stopwatch, &shot, &by_hand, maps, repetition % 2 == 0)?);
+            runs.push(track.turn(&stopwatch, repetition % 2 == 0)?);
         }
-        let clock = stopwatch.clock();
-        Ok(if frame.views.is_empty() { Runs::default().summary(clock) } else { runs.summary(clock) })
+        Ok(if frame.views.is_empty() { Runs::default() } else { runs }.summary(stopwatch.clock()))
     }
+}
 
-    /// One repetition: library and yardstick, casters and receivers, in milliseconds.
-    fn turn(
-        stopwatch: &Stopwatch,
-        shot: &Shot,
-        by_hand: &ByHand,
-        maps: &ShadowMaps,
-        library_first: bool,
-    ) -> Result<[f64; 4], GpuFailure> {
-        let mut times = [0.0; 4];
-        for second in [false, true] {
-            if second == library_first {
-                times[1] = stopwatch.time(|encoder, stamps| by_hand.caster_passes(encoder, stamps, shot))?;
-                times[3] = stopwatch.time(|encoder, stamps| {
-                    shot.receiver_pass(encoder, stamps, &by_hand.receivers, &by_hand.receiver_group);
-                })?;
-            } else {
-                times[0] = stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?;
-                times[2] = stopwatch.time(|encoder, stamps| {
-                    shot.receiver_pass(encoder, stamps, &by_hand.library, maps.bind_group());
-                })?;
-            }
+/// What the entrants run on.
+struct Track<'a> {
+    shot: Shot<'a>,
+    renderer: &'a Renderer,
+    maps: &'a ShadowMaps,
+    entries: Entries,
+}
+
+/// Times of one repetition, milliseconds, in the order of [`Entrant::ALL`].
+type Turn = [f64; Entrant::ALL.len()];
+
+impl Track<'_> {
+    /// One repetition, forwards or backwards.
+    fn turn(&self, stopwatch: &Stopwatch, forwards: bool) -> Result<Turn, GpuFailure> {
+        let mut times = Turn::default();
+        for place in 0..times.len() {
+            let entrant = Entrant::ALL[if forwards { place } else { times.len() - 1 - place }];
+            times[entrant as usize] = stopwatch.time(|encoder, stamps| self.run(entrant, encoder, stamps))?;
         }
         Ok(times)
     }
+
+    fn run(&self, entrant: Entrant, encoder: &mut wgpu::CommandEncoder, stamps: Stamps) {
+        let (shot, entries) = (&self.shot, &self.entries);
+        let (library, by_hand) = (self.maps.bind_group(), &entries.by_hand_group);
+        let (pair, group) = match entrant {
+            Entrant::Casters => return shot.caster_passes(encoder, stamps),
+            Entrant::CastersByHand => return entries.caster_passes(encoder, stamps, shot),
+            Entrant::Receivers => (self.renderer.receivers(), library),
+            Entrant::Shaded => (&entries.shaded, library),
+            Entrant::Whole => (&entries.whole, library),
+            Entrant::WholeShaded => (&entries.whole_shaded, library),
+            Entrant::BareByHand => (&entries.bare_by_hand, by_hand),
+            Entrant::VertexByHand => (&entries.vertex_by_hand, by_hand),
+            Entrant::ShadedByHand => (&entries.shaded_by_hand, by_hand),
+        };
+        shot.receiver_pass(encoder, stamps, pair, group);
+    }
 }
 
-/// Times of all repetitions: casters, casters by hand, receivers, receivers by hand.
+/// Times of all repetitions.
 #[derive(Default)]
-struct Runs {
-    times: [Vec<f64>; 4],
-    ratios: [Vec<f64>; 2],
-}
+struct Runs(Vec<Turn>);
 
 impl Runs {
-    fn push(&mut self, times: [f64; 4]) {
-        for (all, time) in self.times.iter_mut().zip(times) {
-            all.push(time);
-        }
-        self.ratios[0].push(times[0] / times[1]);
-        self.ratios[1].push(times[2] / times[3]);
+    fn push(&mut self, times: Turn) {
+        self.0.push(times);
     }
 
-    fn summary(mut self, clock: Clock) -> Race {
-        let [casters_ms, casters_by_hand_ms, receivers_ms, receivers_by_hand_ms] =
-            self.times.each_mut().map(|times| median(times));
-        let [casters_ratio, receivers_ratio] = self.ratios.each_mut().map(|ratios| median(ratios));
+    fn summary(&self, clock: Clock) -> Race {
+        let of = |figure: &dyn Fn(&Turn) -> f64| median(&mut self.0.iter().map(figure).collect::<Vec<_>>());
+        let ms = |entrant: Entrant| of(&|times| times[entrant as usize]);
+        let ratio = |ours: Entrant, theirs: Entrant| of(&|times| times[ours as usize] / times[theirs as usize]);
         Race {
-            casters_ms,
-            casters_by_hand_ms,
-            casters_ratio,
-            receivers_ms,
-            receivers_by_hand_ms,
-            receivers_ratio,
+            casters_ms: ms(Entrant::Casters),
+            casters_by_hand_ms: ms(Entrant::CastersByHand),
+            casters_ratio: ratio(Entrant::Casters, Entrant::CastersByHand),
+            receivers_ms: ms(Entrant::Receivers),
+            receivers_by_hand_ms: ms(Entrant::BareByHand),
+            receivers_ratio: ratio(Entrant::Shaded, Entrant::ShadedByHand),
+            receivers_bare_ratio: ratio(Entrant::Receivers, Entrant::BareByHand),
+            receivers_vertex_ratio: ratio(Entrant::Receivers, Entrant::VertexByHand),
+            whole_ratio: ratio(Entrant::WholeShaded, Entrant::ShadedByHand),
+            whole_bare_ratio: ratio(Entrant::Whole, Entrant::BareByHand),
             clock,
         }
     }
 }
 
-/// Passes that know nothing of the library.
-struct ByHand {
-    casters: Pair,
+/// The passes that the renderer does not have.
+struct Entries {
+    casters_by_hand: Pair,
     caster_groups: Vec<wgpu::BindGroup>,
     map: wgpu::TextureView,
-    receivers: Pair,
-    /// The library's receivers, shaded in the same way.
-    library: Pair,
-    receiver_group: wgpu::BindGroup,
+    bare_by_hand: Pair,
+    vertex_by_hand: Pair,
+    shaded_by_hand: Pair,
+    by_hand_group: wgpu::BindGroup,
+    shaded: Pair,
+    whole: Pair,
+    whole_shaded: Pair,
 }
 
-impl ByHand {
+impl Entries {
     fn new(gpu: &Gpu, renderer: &Renderer, shot: &Shot, maps: &ShadowMaps) -> Self {
         // Casters: a map of the same size, and a matrix for each view.
-        let size = maps.depth_texture().size();
-        let map = gpu.device().create_texture(&wgpu::TextureDescriptor {
-            label: Some("map by hand"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let map = map.create_view(&wgpu::TextureViewDescriptor::default());
+        let map = map_by_hand(gpu, maps.depth_texture().size());
         let text = [include_str!("cutout.wgsl"), include_str!("by_hand_casters.wgsl")].concat();
-        let casters = pipelines::caster_pair(gpu, "casters by hand", &text, None, renderer.caster_layout());
+        let casters_by_hand = pipelines::caster_pair(gpu, "casters by hand", &text, None, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
-        // Receivers: the first view's map.
-        let text = [pipelines::STAGE, pipelines::SHADE, include_str!("by_hand.wgsl")].concat();
+        // Receivers by hand: the first view's map.
         let layout = receiver_layout(gpu);
-        let receivers = pipelines::receiver_pair(gpu, "receivers by hand", &text, &layout);
+        let by_hand = |host| {
+            pipelines::receiver_pair(gpu, "receivers by hand", include_str!("light_by_hand.wgsl"), host, &layout)
+        };
         let matrix = shot.views().first().map_or(Mat4::IDENTITY, texture_from_render);
-        let receiver_group = receiver_group(gpu, &layout, &map, &matrix);
-        let library = pipelines::shaded_receivers(gpu, renderer.key());
-        Self { casters, caster_groups, map, receivers, library, receiver_group }
+        let by_hand_group = receiver_group(gpu, &layout, &map, &matrix);
+        // The library's receivers in other hosts than the renderer's.
+        let library = |host| pipelines::library_receivers(gpu, renderer.key(), host);
+        Self {
+            casters_by_hand,
+            caster_groups,
+            map,
+            bare_by_hand: by_hand(Host::Bare),
+            vertex_by_hand: by_hand(Host::Placed),
+            shaded_by_hand: by_hand(Host::WholeShaded),
+            by_hand_group,
+            shaded: library(Host::shaded(renderer.key())),
+            whole: library(Host::Whole),
+            whole_shaded: library(Host::WholeShaded),
+        }
     }
 
     fn caster_passes(&self, encoder: &mut wgpu::CommandEncoder, stamps: Stamps, shot: &Shot) {
@@ -175,9 +228,23 @@ impl ByHand {
                 ..Default::default()
             });
             pass.set_bind_group(0, group, &[0]);
-            shot.scene.draw(&mut pass, batches, &self.casters);
+            shot.scene.draw(&mut pass, batches, &self.casters_by_hand);
         }
     }
+}
+
+fn map_by_hand(gpu: &Gpu, size: wgpu::Extent3d) -> wgpu::TextureView {
+    let map = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("map by hand"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    map.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Texture coordinates and depth in one matrix, as every tutorial has it.
@@ -197,7 +264,7 @@ fn caster_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, view: &ShadowView) ->
 }
 
 fn receiver_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let visibility = wgpu::ShaderStages::FRAGMENT;
+    let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
     let map = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Depth,
         view_dimension: wgpu::TextureViewDimension::D2,

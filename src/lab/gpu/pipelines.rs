@@ -3,7 +3,7 @@
 use wgpu::VertexFormat::{Float32x2, Float32x3, Snorm16x4};
 
 use super::{Gpu, scene::Attributes};
-use crate::frame::{MapShape, WgslKey};
+use crate::frame::{MapShape, Pcf, WgslKey};
 use crate::gpu;
 use crate::wgsl::{self, Bindings};
 
@@ -11,7 +11,7 @@ use crate::wgsl::{self, Bindings};
 pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// The camera's passes: what they share.
-pub(super) const STAGE: &str = concat!(include_str!("stage.wgsl"), include_str!("cutout.wgsl"));
+const STAGE: &str = concat!(include_str!("stage.wgsl"), include_str!("cutout.wgsl"));
 
 /// A pass for solid triangles, and the same for triangles with cut-outs.
 #[derive(Debug)]
@@ -84,38 +84,89 @@ pub(super) fn camera_depth(gpu: &Gpu) -> Pair {
     )
 }
 
-/// Receivers that call `antumbra_visibility`.
+/// How a receiver's shader is built around its lookup.
+#[derive(Clone, Copy)]
+pub(super) enum Host {
+    /// Looked up at each fragment, from position and normal.
+    Whole,
+    /// The same, shaded.
+    WholeShaded,
+    /// Placed at each vertex, sampled at each fragment.
+    Placed,
+    /// The same, shaded.
+    PlacedShaded,
+    /// Looked up at each fragment, from a position alone.
+    Bare,
+}
+
+impl Host {
+    /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they cost;
+    /// their lookup stays whole. In warped maps nothing of it is linear in position.
+    pub(super) fn of(key: WgslKey) -> Self {
+        match (key.shape, key.filter) {
+            (MapShape::Affine, Pcf::Point | Pcf::Hardware2x2) => Self::Placed,
+            (MapShape::Affine, Pcf::Box3x3 | Pcf::Box5x5) | (MapShape::Projective, _) => Self::Whole,
+        }
+    }
+
+    /// The same, shaded.
+    pub(super) fn shaded(key: WgslKey) -> Self {
+        match Self::of(key) {
+            Self::Placed => Self::PlacedShaded,
+            _ => Self::WholeShaded,
+        }
+    }
+
+    /// Its text, and its vertex functions for solid triangles and for triangles with cut-outs.
+    fn parts(self) -> (&'static str, [&'static str; 2]) {
+        const WHOLE: [&str; 2] = ["place", "place_cut"];
+        const OWN: [&str; 2] = ["put", "put_cut"];
+        match self {
+            Self::Whole => (concat!(include_str!("shade_not.wgsl"), include_str!("host_whole.wgsl")), WHOLE),
+            Self::WholeShaded => (concat!(include_str!("shade.wgsl"), include_str!("host_whole.wgsl")), WHOLE),
+            Self::Placed => (include_str!("host_placed.wgsl"), OWN),
+            Self::PlacedShaded => (concat!(include_str!("shade.wgsl"), include_str!("host_placed_shaded.wgsl")), OWN),
+            Self::Bare => (include_str!("host_bare.wgsl"), OWN),
+        }
+    }
+}
+
+/// The library's receivers as the laboratory draws them.
 pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
-    receivers_with(gpu, key, &[STAGE, include_str!("receivers.wgsl")])
+    library_receivers(gpu, key, Host::of(key))
 }
 
-/// The same, shaded as an engine would: what the yardstick is compared with.
-pub(super) fn shaded_receivers(gpu: &Gpu, key: WgslKey) -> Pair {
-    receivers_with(gpu, key, &[STAGE, SHADE, include_str!("receivers_shaded.wgsl")])
-}
-
-/// Shading, for text beside [`STAGE`].
-pub(super) const SHADE: &str = include_str!("shade.wgsl");
-
-fn receivers_with(gpu: &Gpu, key: WgslKey, parts: &[&str]) -> Pair {
-    let text = [wgsl::module(key, Bindings { group: 1, first: 0 }), parts.concat()].concat();
+/// The library's receivers in any host.
+pub(super) fn library_receivers(gpu: &Gpu, key: WgslKey, host: Host) -> Pair {
+    let placed = match key.shape {
+        MapShape::Affine => include_str!("light_placed.wgsl"),
+        MapShape::Projective => "",
+    };
+    let text = [&wgsl::module(key, Bindings { group: 1, first: 0 }), include_str!("light_whole.wgsl"), placed].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("maps"),
-        entries: &gpu::layout_entries(key, 0, wgpu::ShaderStages::FRAGMENT),
+        entries: &gpu::layout_entries(key, 0, wgpu::ShaderStages::VERTEX_FRAGMENT),
     });
-    receiver_pair(gpu, "receivers", &text, &maps)
+    receiver_pair(gpu, "receivers", &text, host, &maps)
 }
 
-/// A receiver pair of any text with the entry points `receive` and `receive_cut` beside [`STAGE`].
-pub(super) fn receiver_pair(gpu: &Gpu, label: &'static str, text: &str, maps: &wgpu::BindGroupLayout) -> Pair {
+/// Receivers of any text with the functions that the host calls.
+pub(super) fn receiver_pair(
+    gpu: &Gpu,
+    label: &'static str,
+    light: &str,
+    host: Host,
+    maps: &wgpu::BindGroupLayout,
+) -> Pair {
+    let (text, [solid, cut]) = host.parts();
     pair(
         gpu,
         &PairDescriptor {
             label,
-            text,
+            text: &[light, STAGE, text].concat(),
             groups: [Some(&camera_layout(gpu.device())), Some(maps)],
-            solid: ("place", Some("receive")),
-            cut: ("place_cut", "receive_cut"),
+            solid: (solid, Some("receive")),
+            cut: (cut, "receive_cut"),
             depth: camera_depth_state(false),
             target: Some(MASK_FORMAT),
         },

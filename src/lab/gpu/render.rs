@@ -228,6 +228,11 @@ impl Renderer {
     pub(super) fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
     }
+
+    /// Its pass over receivers.
+    pub(super) fn receivers(&self) -> &Pair {
+        &self.receivers
+    }
 }
 
 /// Every view of a frame knows the origin it was fitted with.
