@@ -33,5 +33,5 @@ pub(crate) fn footprint(
         least = least.min(pixels);
         most = most.max(pixels);
     }
-    (Footprint { min: least.min(largest) as f32, max: most as f32 }, [nearest as f32, farthest as f32])
+    (Footprint { min: least.min(largest) as f32, max: most as f32, error: 0.0 }, [nearest as f32, farthest as f32])
 }

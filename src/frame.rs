@@ -167,11 +167,14 @@ pub struct Footprint {
     pub min: f32,
     /// Largest, pixels.
     pub max: f32,
+    /// Predicted picture error: the mean side of a texel over what is seen, world units. Pixels that are wrong are proportional to it, so that it ranks
+    /// maps of one picture. Kind of promise: typical (`docs/WARPS.md`).
+    pub error: f32,
 }
 
 impl Footprint {
     /// No texel at all.
-    pub const NONE: Self = Self { min: 0.0, max: 0.0 };
+    pub const NONE: Self = Self { min: 0.0, max: 0.0, error: 0.0 };
 }
 
 /// The casters of a view: a convex volume that is open towards the light.

@@ -38,11 +38,13 @@ pub(crate) struct Layout {
     pub(crate) window: Window,
     /// κλ of its warp; 0 for uniform maps.
     pub(crate) strength: f64,
+    /// Mean over what is seen of a texel's two sides, for one texel over the window, world units.
+    pub(crate) error: f64,
 }
 
 impl Layout {
     fn uniform(body: FocusBody, window: Window) -> Self {
-        Self { body, window, strength: 0.0 }
+        Self { body, strength: 0.0, error: window.size().element_sum(), window }
     }
 }
 
@@ -105,25 +107,23 @@ impl Fitter<'_> {
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
         let limit = |around: &WarpFrame| self.strongest(around.extent, margin);
-        let predictor =
-            |around: &WarpFrame| Predictor::of(camera, &body, &sight, around, self.input.scene.visible_points, origin);
         let choice = match warp {
-            Warp::Uniform | Warp::Focused => Choice { frame: sight.frame(), strength: 0.0 },
+            Warp::Uniform | Warp::Focused | Warp::LeastError => Choice { frame: sight.frame(), strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
             Warp::Trapezoidal { focus } => trapezoid::choose(camera, &sight, focus),
             Warp::LightSpacePerspective => lispsm::choose(&sight),
             Warp::Perspective { pull_back } => perspective::choose(camera, &sight, f64::from(pull_back)),
             Warp::Minimax => minimax::choose(&sight, limit(&sight.frame())),
-            Warp::LeastError => predictor(&sight.frame()).choose(limit(&sight.frame())),
         };
+        let (around, limit) = (choice.frame, limit(&choice.frame));
+        let predictor = Predictor::of(camera, &body, &sight, &around, self.input.scene.visible_points, origin);
+        let asked = if warp == Warp::LeastError { predictor.least(limit) } else { choice.strength };
         // Limit it to what texels and positions allow, and to what pays.
-        let (around, asked, limit) = (choice.frame, choice.strength, limit(&choice.frame));
         let allowed = asked.min(limit);
         if asked > limit {
             frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked, limit });
         }
-        let guarded = guard && warp.is_published();
-        let strength = if guarded { predictor(&around).guarded(allowed) } else { allowed };
+        let strength = if guard && warp.is_published() { predictor.guarded(allowed) } else { allowed };
         if strength < allowed {
             frame.leave_out(Part::Warp(0), Why::WarpDoesNotPay { asked: allowed, limit: strength });
         }
@@ -134,7 +134,8 @@ impl Fitter<'_> {
         } else {
             Window::least_area(sight.light, bend, &body.vertices, margin)
         };
-        Layout { body, window, strength }
+        let error = predictor.error(strength);
+        Layout { body, window, strength, error }
     }
 
     /// The largest κλ that a map of these texels takes over `extent` world units, positions being uncertain by `margin`.

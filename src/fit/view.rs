@@ -60,7 +60,7 @@ impl Texels {
 
 impl Fitter<'_> {
     /// From a window to a view and its uniforms, appended to the frame.
-    pub(crate) fn view(&self, &Layout { ref body, ref window, strength }: &Layout, frame: &mut ShadowFrame) {
+    pub(crate) fn view(&self, &Layout { ref body, ref window, strength, error }: &Layout, frame: &mut ShadowFrame) {
         let (input, texels) = (self.input, &self.texels);
         let margin = rounding_margin(&body.vertices, self.input.origin);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
@@ -81,7 +81,8 @@ impl Fitter<'_> {
         self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
         let sides = |vertex: &DVec3| drawn.texel_at(light.ray(*vertex).truncate(), texel).map(|side| side.length());
         let longest = |vertex: &DVec3| sides(vertex).into_iter().fold(0.0, f64::max);
-        let (pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, longest);
+        let (mut pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, longest);
+        pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
         let world = body
             .vertices
             .iter()

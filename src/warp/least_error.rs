@@ -25,7 +25,7 @@
 use glam::{DVec2, DVec3};
 
 use super::search::{least, not_worse};
-use super::sight::{Choice, Sight};
+use super::sight::Sight;
 use crate::camera::Camera;
 use crate::focus::FocusBody;
 use crate::math::homography::WarpFrame;
@@ -108,8 +108,8 @@ impl<'a> Predictor<'a> {
     }
 
     /// The strength of the least error, at most κλ = `limit`.
-    pub(crate) fn choose(&self, limit: f64) -> Choice {
-        Choice { frame: self.frame, strength: least(limit, |strength| self.error(strength)) }
+    pub(crate) fn least(&self, limit: f64) -> f64 {
+        least(limit, |strength| self.error(strength))
     }
 
     /// A strength, limited to what is predicted to be no worse than uniform.
