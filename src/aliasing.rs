@@ -9,29 +9,48 @@ use glam::DVec3;
 use crate::camera::Camera;
 use crate::frame::Footprint;
 
-/// Pixels per texel of a map over a body, and the range of eye depths: texel size over pixel size at its vertices.
-/// `texel` gives the longest side of a texel at a vertex, world units.
+/// What a body's vertices say of a map's texels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extremes {
+    /// Pixels per texel: its longest side over a pixel at the eye depth.
+    pub(crate) pixels: Footprint,
+    /// Shortest and longest side of a texel, world units.
+    pub(crate) world: [f32; 2],
+    /// Nearest and farthest eye depth.
+    pub(crate) domain: [f32; 2],
+}
+
+/// The extremes over the vertices of a body; `sides` gives the sides of a texel at a vertex, world units across the light.
 ///
 /// Exact for surfaces that face both the light and the camera. O(vertices).
-pub(crate) fn footprint(
+pub(crate) fn extremes(
     camera: &Camera,
     vertices: &[DVec3],
     origin: DVec3,
-    texel: impl Fn(&DVec3) -> f64,
-) -> (Footprint, [f32; 2]) {
+    sides: impl Fn(DVec3) -> [f64; 2],
+) -> Extremes {
     let (near, far) = camera.projection.depth_range();
-    let picture = camera.viewport.as_dvec2();
-    // A lens that sees nothing wide makes texels that fill any picture: the largest number stands for it.
-    let largest = f64::from(f32::MAX);
+    let pixels_per_unit = camera.pixels_per_unit();
     let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
     for vertex in vertices {
         let depth = camera.eye_depth(*vertex, origin).clamp(near, far);
-        nearest = nearest.min(depth);
-        farthest = farthest.max(depth);
-        let pixels = (texel(vertex) * (picture / camera.projection.size_at(depth)).max_element()).min(largest);
-        least = least.min(pixels);
-        most = most.max(pixels);
+        let [one, other] = sides(*vertex);
+        let (short, long) = (one.min(other), one.max(other));
+        let pixels = long * pixels_per_unit / if camera.projection.spreads() { depth } else { 1.0 };
+        (nearest, farthest) = (nearest.min(depth), farthest.max(depth));
+        (shortest, longest) = (shortest.min(short), longest.max(long));
+        (least, most) = (least.min(pixels), most.max(pixels));
     }
-    (Footprint { min: least.min(largest) as f32, max: most as f32, error: 0.0 }, [nearest as f32, farthest as f32])
+    Extremes {
+        pixels: Footprint { min: narrowed(least), max: narrowed(most), error: 0.0 },
+        world: [narrowed(shortest), narrowed(longest)],
+        domain: [nearest as f32, farthest as f32],
+    }
+}
+
+/// To f32. A lens that sees nothing wide makes texels that fill any picture: the largest number stands for it.
+fn narrowed(value: f64) -> f32 {
+    value.min(f64::from(f32::MAX)) as f32
 }

@@ -181,6 +181,11 @@ impl Camera {
         })
     }
 
+    /// Pixels per world unit at eye depth 1 (perspective) or everywhere (orthographic), along the picture's finer axis.
+    pub(crate) fn pixels_per_unit(&self) -> f64 {
+        (self.viewport.as_dvec2() / self.projection.size_at(1.0)).max_element()
+    }
+
     /// Where a point of render space is in the picture: tangents from the view axis, or distances (orthographic).
     pub(crate) fn picture_position(&self, position: DVec3, origin: DVec3) -> DVec2 {
         let from_eye = position - (self.eye() - origin);
@@ -225,6 +230,11 @@ impl Projection {
             Self::Perspective { left, right, down, up, .. } => (left, right, down, up, true),
             Self::Orthographic { left, right, down, up, .. } => (left, right, down, up, false),
         }
+    }
+
+    /// Whether what is seen grows with depth.
+    pub(crate) fn spreads(&self) -> bool {
+        matches!(self, Self::Perspective { .. })
     }
 
     /// The middle of the picture: tangents from the view axis, or distances (orthographic).

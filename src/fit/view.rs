@@ -1,8 +1,8 @@
 //! From a body to a view: window, texels, casters, depth, matrix, bias.
 
-use glam::{DVec3, DVec4, UVec4};
+use glam::{DVec2, DVec3, DVec4, UVec4};
 
-use crate::aliasing::footprint;
+use crate::aliasing::extremes;
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding_margin};
@@ -79,15 +79,11 @@ impl Fitter<'_> {
         let rows = self.texture_rows(&clip_from_render);
         let mut uniforms = self.uniforms(&rows, &clip_from_render);
         self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
-        let sides = |vertex: &DVec3| drawn.texel_at(light.ray(*vertex).truncate(), texel).map(|side| side.length());
-        let longest = |vertex: &DVec3| sides(vertex).into_iter().fold(0.0, f64::max);
-        let (mut pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, longest);
-        pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
-        let world = body
-            .vertices
-            .iter()
-            .flat_map(sides)
-            .fold([f64::INFINITY, 0.0], |[least, most], side| [side.min(least), side.max(most)]);
+        let sides = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length);
+        let same = window.bend.is_none().then(|| texel.to_array());
+        let mut extremes =
+            extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| sides(vertex)));
+        extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
         // Say what was cut.
         if window.size().min_element() < 3.0 * margin {
             frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: window.size().min_element() });
@@ -103,14 +99,14 @@ impl Fitter<'_> {
             viewport: UVec4::new(ring, ring, input.map.side - 2 * ring, input.map.side - 2 * ring),
             layer: 0,
             cull,
-            texel: TexelSize { world: world.map(|side| side.min(f64::from(f32::MAX)) as f32), pixels },
+            texel: TexelSize { world: extremes.world, pixels: extremes.pixels },
             warp_strength: strength as f32,
-            domain,
+            domain: extremes.domain,
         };
         if frame.views.try_push(view).is_ok() {
             frame.uniforms.views[index] = uniforms;
             frame.uniforms.counts[0] += 1;
-            frame.predicted = pixels;
+            frame.predicted = extremes.pixels;
         }
     }
 

@@ -22,17 +22,19 @@
 //! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: errors of warps by storage and by maximum,
 //!   which this mean replaces.
 
+use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 
 use super::search::{least, not_worse};
 use super::sight::Sight;
 use crate::camera::Camera;
-use crate::focus::FocusBody;
+use crate::focus::{FocusBody, MAX_WALLS};
+use crate::math::convex::MAX_VERTICES;
 use crate::math::homography::WarpFrame;
 
 /// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen strength by a
 /// hundredth and cost microseconds; half as many make it jump where a ray leaves the body.
-const RAYS: [u32; 2] = [8, 6];
+const RAYS: [u32; 2] = [6, 4];
 
 /// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
 /// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.
@@ -44,19 +46,21 @@ const RELUCTANCE: f64 = 0.15;
 
 /// The body's moments along a warp's axis, and what an evaluation of the error needs besides.
 #[derive(Clone, Debug)]
-pub(crate) struct Predictor<'a> {
-    points: &'a [DVec2],
-    frame: WarpFrame,
+pub(crate) struct Predictor {
+    /// (u, c) of the body's vertices.
+    points: ArrayVec<DVec2, MAX_VERTICES>,
+    /// λ.
+    extent: f64,
     /// Means of (u/λ)^i, i = 1, 2.
     moments: [f64; 2],
 }
 
-impl<'a> Predictor<'a> {
+impl Predictor {
     /// Of what is in view, along the axis of `frame`; `samples` are positions that are seen, world space, any number of them.
     pub(crate) fn of(
         camera: &Camera,
         body: &FocusBody,
-        sight: &'a Sight,
+        sight: &Sight,
         frame: &WarpFrame,
         samples: &[DVec3],
         origin: DVec3,
@@ -65,8 +69,10 @@ impl<'a> Predictor<'a> {
         let top = frame.top.dot(frame.axis) / frame.extent;
         // Anywhere in the body.
         let mut sums = [0.0; 3];
-        for (start, direction) in rays(camera, body, origin) {
-            let Some([near, far]) = span(body, start, direction) else { continue };
+        let sheaf = Sheaf::over(camera, body, origin);
+        for index in 0..RAYS[0] * RAYS[1] {
+            let (start, direction) = sheaf.ray(index);
+            let Some([near, far]) = sheaf.span(start, direction) else { continue };
             let (from, to) = (along(start + direction * near) - top, along(start + direction * far) - top);
             let length = far - near;
             sums[0] += length;
@@ -91,20 +97,24 @@ impl<'a> Predictor<'a> {
             let anywhere = if in_body[i].is_finite() { in_body[i].clamp(0.0, 1.0) } else { 1.0 };
             anywhere + trust * (in_picture[i] - anywhere)
         });
-        Self { points: &sight.points, frame: *frame, moments }
+        let points = sight.points.iter().map(|point| frame.coordinates(*point)).collect();
+        Self { points, extent: frame.extent, moments }
     }
 
     /// E at κλ = `strength`, world units: the sides of a texel, if one texel were all there is.
     pub(crate) fn error(&self, strength: f64) -> f64 {
-        let extent = self.frame.extent;
-        let kappa = strength / extent;
+        let kappa = strength / self.extent;
         let [first, second] = self.moments;
         let w = 1.0 + strength * first;
         let w_squared = 1.0 + strength * (2.0 * first + strength * second);
-        let [a0, a1] = self.frame.sides(kappa, self.points);
+        let (mut a0, mut a1) = (f64::INFINITY, f64::NEG_INFINITY);
+        for point in &self.points {
+            let slope = point.y / (1.0 + kappa * point.x.max(0.0));
+            (a0, a1) = (a0.min(slope), a1.max(slope));
+        }
         let slant = (1.0 + kappa * kappa * (a0 * a0 + a0 * a1 + a1 * a1) / 3.0).sqrt();
         let k = 1.0 + strength;
-        ((a1 - a0) * w + extent / k * slant * w_squared) * (1.0 + RELUCTANCE * strength / k)
+        ((a1 - a0) * w + self.extent / k * slant * w_squared) * (1.0 + RELUCTANCE * strength / k)
     }
 
     /// The strength of the least error, at most κλ = `limit`.
@@ -119,34 +129,56 @@ impl<'a> Predictor<'a> {
 }
 
 /// Rays over the part of the picture that the body covers: positions at eye depth ζ are start + direction · ζ.
-fn rays<'a>(camera: &'a Camera, body: &FocusBody, origin: DVec3) -> impl Iterator<Item = (DVec3, DVec3)> + use<'a> {
-    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for vertex in &body.vertices {
-        let at = camera.picture_position(*vertex, origin);
-        low = low.min(at);
-        high = high.max(at);
-    }
-    let [columns, rows] = RAYS;
-    (0..columns * rows).map(move |index| {
-        let cell = DVec2::new(f64::from(index % columns) + 0.5, f64::from(index / columns) + 0.5);
-        let at = low + (high - low) * cell / DVec2::new(f64::from(columns), f64::from(rows));
-        camera.ray(at, origin)
-    })
+struct Sheaf<'a> {
+    camera: &'a Camera,
+    body: &'a FocusBody,
+    origin: DVec3,
+    low: DVec2,
+    high: DVec2,
+    /// For rays that share their start, its distance to every wall.
+    from_eye: Option<ArrayVec<f64, MAX_WALLS>>,
 }
 
-/// The eye depths between which a ray is inside the body.
-fn span(body: &FocusBody, start: DVec3, direction: DVec3) -> Option<[f64; 2]> {
-    let (mut near, mut far) = (body.depth.near, body.depth.far);
-    for wall in &body.walls {
-        let (at_start, per_depth) = (wall.truncate().dot(start) + wall.w, wall.truncate().dot(direction));
-        let crossing = -at_start / per_depth;
-        if per_depth > 0.0 {
-            near = near.max(crossing);
-        } else if per_depth < 0.0 {
-            far = far.min(crossing);
-        } else if at_start < 0.0 {
-            return None;
+impl<'a> Sheaf<'a> {
+    fn over(camera: &'a Camera, body: &'a FocusBody, origin: DVec3) -> Self {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for vertex in &body.vertices {
+            let at = camera.picture_position(*vertex, origin);
+            low = low.min(at);
+            high = high.max(at);
         }
+        let eye = camera.eye() - origin;
+        let from_eye = camera
+            .projection
+            .spreads()
+            .then(|| body.walls.iter().map(|wall| wall.truncate().dot(eye) + wall.w).collect());
+        Self { camera, body, origin, low, high, from_eye }
     }
-    (near < far).then_some([near, far])
+
+    fn ray(&self, index: u32) -> (DVec3, DVec3) {
+        let [columns, rows] = RAYS;
+        let cell = DVec2::new(f64::from(index % columns) + 0.5, f64::from(index / columns) + 0.5);
+        let share = cell / DVec2::new(f64::from(columns), f64::from(rows));
+        self.camera.ray(self.low + (self.high - self.low) * share, self.origin)
+    }
+
+    /// The eye depths between which a ray is inside the body.
+    fn span(&self, start: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+        let (mut near, mut far) = (self.body.depth.near, self.body.depth.far);
+        for (index, wall) in self.body.walls.iter().enumerate() {
+            let at_start = match &self.from_eye {
+                Some(distances) => distances[index],
+                None => wall.truncate().dot(start) + wall.w,
+            };
+            let per_depth = wall.truncate().dot(direction);
+            if per_depth > 0.0 {
+                near = near.max(-at_start / per_depth);
+            } else if per_depth < 0.0 {
+                far = far.min(-at_start / per_depth);
+            } else if at_start < 0.0 {
+                return None;
+            }
+        }
+        (near < far).then_some([near, far])
+    }
 }

@@ -33,24 +33,44 @@ pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
     if at(best) < error(0.0) { best.exp_m1() } else { 0.0 }
 }
 
-/// Halvings in [`not_worse`]: 1/4096 of the interval.
-const HALVINGS: u32 = 12;
+/// Steps in [`not_worse`]: false position with Illinois' remedy gains more than a digit each.
+const FALSE_POSITIONS: u32 = 7;
 
-/// The strength itself where `error` is at most that of none; else the largest below it where that holds.
+/// The strength itself where `error` is at most that of none; else the largest below it where that holds, or a little less.
 ///
-/// Continuous wherever `error` is and has one valley: the largest such strength goes to 0 as the valley does.
+/// Continuous wherever `error` is and has one valley: that strength goes to 0 as the valley does. At most 10 evaluations.
 pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     let uniform = error(0.0);
-    if !(error(strength) > uniform) {
+    let last = error(strength) - uniform;
+    if !(last > 0.0) {
         return strength;
     }
-    let (mut low, mut high) = (0.0, strength.ln_1p());
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if error(middle.exp_m1()) > uniform { high = middle } else { low = middle }
+    // The mean slope from 0: unlike the difference itself, it is not zero at 0 again.
+    let slope = |log: f64| (error(log.exp_m1()) - uniform) / log;
+    let mut high = (strength.ln_1p(), last / strength.ln_1p());
+    // A valley begins at 0, if there is one.
+    let near = high.0 * FIRST_STEP;
+    let mut low = (near, slope(near));
+    if low.1 >= 0.0 {
+        return 0.0;
     }
-    low.exp_m1()
+    for _ in 0..FALSE_POSITIONS {
+        let middle = (low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1)).clamp(low.0, high.0);
+        let at = slope(middle);
+        if at > 0.0 {
+            high = (middle, at);
+            low.1 *= 0.5;
+        } else {
+            low = (middle, at);
+            high.1 *= 0.5;
+        }
+    }
+    low.0.exp_m1()
 }
+
+/// Where a valley is looked for, as a share of ln(1 + κλ): a valley that is over before is treated as none. Larger misses shallow
+/// valleys, smaller sees nothing but rounding.
+const FIRST_STEP: f64 = 1.0 / 1024.0;
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,7 @@
 //! What a warp is chosen from: the body as light and eye see it.
 //!
 //! # References
-//! - Scherzer, *Robust shadow maps for large environments*, 2005, eq. (3): V_P, the view direction across the light.
+//! - Scherzer, *Robust shadow maps for large environments*, 2005, eq. (3): `V_P`, the view direction across the light.
 
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
@@ -49,8 +49,8 @@ impl Sight {
         let vertices = || vertices.iter().take(MAX_VERTICES);
         let depths: ArrayVec<f64, MAX_VERTICES> =
             vertices().map(|vertex| camera.eye_depth(*vertex, origin).clamp(near, far)).collect();
-        let picture = camera.viewport.as_dvec2();
-        let pixel_size = |depth: &f64| (camera.projection.size_at(*depth) / picture).min_element();
+        let per_depth = camera.pixels_per_unit().recip();
+        let pixel_size = |depth: &f64| per_depth * if camera.projection.spreads() { *depth } else { 1.0 };
         Self {
             light,
             points: vertices().map(|vertex| across(*vertex)).collect(),
