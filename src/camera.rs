@@ -237,6 +237,13 @@ impl Projection {
         matches!(self, Self::Perspective { .. })
     }
 
+    /// Sine of the angle from the view axis to the widest side; 0 for orthographic cameras.
+    pub(crate) fn half_angle_sine(&self) -> f64 {
+        let (left, right, down, up, spreads) = self.sides();
+        let tangent = left.abs().max(right.abs()).max(down.abs()).max(up.abs());
+        if spreads { tangent / tangent.hypot(1.0) } else { 0.0 }
+    }
+
     /// The middle of the picture: tangents from the view axis, or distances (orthographic).
     pub(crate) fn middle(&self) -> DVec2 {
         let (left, right, down, up, _) = self.sides();

@@ -12,7 +12,7 @@ use crate::math::homography::{STRONGEST, WarpFrame};
 use crate::report::{Part, Why};
 use crate::scene::Aabb;
 use crate::warp::bend::Bend;
-use crate::warp::least_error::Predictor;
+use crate::warp::least_error::{Predictor, Seen};
 use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
 use crate::warp::{Warp, lispsm, minimax, perspective, trapezoid};
@@ -107,23 +107,28 @@ impl Fitter<'_> {
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
         let limit = |around: &WarpFrame| self.strongest(around.extent, margin);
+        let seen = Seen::of(camera, &body, &sight, self.input.scene.visible_points, origin);
         let choice = match warp {
-            Warp::Uniform | Warp::Focused | Warp::LeastError => Choice { frame: sight.frame(), strength: 0.0 },
+            Warp::Uniform | Warp::Focused => Choice { frame: sight.frame(), strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
             Warp::Trapezoidal { focus } => trapezoid::choose(camera, &sight, focus),
             Warp::LightSpacePerspective => lispsm::choose(&sight),
             Warp::Perspective { pull_back } => perspective::choose(camera, &sight, f64::from(pull_back)),
             Warp::Minimax => minimax::choose(&sight, limit(&sight.frame())),
+            Warp::LeastError => {
+                let frame = sight.frame_along(seen.axis(&sight));
+                Choice { frame, strength: Predictor::along(&frame, &seen, &sight).least(limit(&frame)) }
+            }
         };
-        let (around, limit) = (choice.frame, limit(&choice.frame));
-        let predictor = Predictor::of(camera, &body, &sight, &around, self.input.scene.visible_points, origin);
-        let asked = if warp == Warp::LeastError { predictor.least(limit) } else { choice.strength };
+        let (around, limit, asked) = (choice.frame, limit(&choice.frame), choice.strength);
+        let predictor = Predictor::along(&around, &seen, &sight);
         // Limit it to what texels and positions allow, and to what pays.
         let allowed = asked.min(limit);
         if asked > limit {
             frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked, limit });
         }
-        let strength = if guard && warp.is_published() { predictor.guarded(allowed) } else { allowed };
+        let guarded = guard && warp.is_published();
+        let strength = if guarded { predictor.guarded(allowed * sight.directed()) } else { allowed };
         if strength < allowed {
             frame.leave_out(Part::Warp(0), Why::WarpDoesNotPay { asked: allowed, limit: strength });
         }
@@ -132,7 +137,7 @@ impl Fitter<'_> {
         let window = if warp.is_published() && !guard {
             Window::turned(sight.light, bend, around.axis, &body.vertices, margin)
         } else {
-            Window::least_area(sight.light, bend, &body.vertices, margin)
+            Window::steady(sight.light, bend, &body.vertices, margin)
         };
         let error = predictor.error(strength);
         Layout { body, window, strength, error }

@@ -34,7 +34,7 @@ use crate::math::homography::WarpFrame;
 
 /// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen strength by a
 /// hundredth and cost microseconds; half as many make it jump where a ray leaves the body.
-const RAYS: [u32; 2] = [6, 4];
+const RAYS: [u32; 2] = [7, 5];
 
 /// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
 /// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.
@@ -44,7 +44,68 @@ const ENOUGH_SAMPLES: f64 = 8.0;
 /// by half cost twice that. Measured: 0.15 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
 const RELUCTANCE: f64 = 0.15;
 
-/// The body's moments along a warp's axis, and what an evaluation of the error needs besides.
+/// What is seen, across the light: means and mean products of (p, q), relative to the eye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    mean: DVec2,
+    /// Means of p², p q, q².
+    products: DVec3,
+}
+
+impl Seen {
+    /// Of a body in view; `samples` are positions that are seen, world space, any number of them.
+    pub(crate) fn of(camera: &Camera, body: &FocusBody, sight: &Sight, samples: &[DVec3], origin: DVec3) -> Self {
+        let across = |vector: DVec3| sight.light.ray(vector).truncate() - sight.eye;
+        // Anywhere in the body: (2), along rays.
+        let (mut length, mut sum, mut products) = (0.0, DVec2::ZERO, DVec3::ZERO);
+        let sheaf = Sheaf::over(camera, body, origin);
+        for index in 0..RAYS[0] * RAYS[1] {
+            let (start, direction) = sheaf.ray(index);
+            let Some([near, far]) = sheaf.span(start, direction) else { continue };
+            let (from, to) = (across(start + direction * near), across(start + direction * far));
+            length += far - near;
+            sum += (from + to) * (0.5 * (far - near));
+            products += mean_products(from, to) * (far - near);
+        }
+        let anywhere = Self { mean: sum / length, products: products / length };
+        // Where surfaces are seen.
+        let (mut count, mut sum, mut products) = (0.0, DVec2::ZERO, DVec3::ZERO);
+        for sample in samples {
+            let at = across(*sample - origin);
+            if at.cmpge(sight.low).all() && at.cmple(sight.high).all() {
+                count += 1.0;
+                sum += at;
+                products += mean_products(at, at);
+            }
+        }
+        if count == 0.0 {
+            return anywhere;
+        }
+        let in_picture = Self { mean: sum / count, products: products / count };
+        if !(length > 0.0) {
+            return in_picture;
+        }
+        let trust = count / (count + ENOUGH_SAMPLES);
+        Self {
+            mean: anywhere.mean.lerp(in_picture.mean, trust),
+            products: anywhere.products.lerp(in_picture.products, trust),
+        }
+    }
+
+    /// The direction in which W has to grow to be small where things are seen: from their mean to the middle of the body. Not
+    /// normalised; it vanishes where no direction is better than another, and there a warp along it does no good.
+    pub(crate) fn axis(&self, sight: &Sight) -> DVec2 {
+        sight.middle - (self.mean + sight.eye)
+    }
+}
+
+/// Means of p², p q, q² between two points.
+fn mean_products(from: DVec2, to: DVec2) -> DVec3 {
+    let mean = |a: f64, b: f64, c: f64, d: f64| (2.0 * (a * c + b * d) + a * d + b * c) / 6.0;
+    DVec3::new(mean(from.x, to.x, from.x, to.x), mean(from.x, to.x, from.y, to.y), mean(from.y, to.y, from.y, to.y))
+}
+
+/// The moments of what is seen along a warp's axis, and what an evaluation of the error needs besides.
 #[derive(Clone, Debug)]
 pub(crate) struct Predictor {
     /// (u, c) of the body's vertices.
@@ -56,49 +117,18 @@ pub(crate) struct Predictor {
 }
 
 impl Predictor {
-    /// Of what is in view, along the axis of `frame`; `samples` are positions that are seen, world space, any number of them.
-    pub(crate) fn of(
-        camera: &Camera,
-        body: &FocusBody,
-        sight: &Sight,
-        frame: &WarpFrame,
-        samples: &[DVec3],
-        origin: DVec3,
-    ) -> Self {
-        let along = |vector: DVec3| sight.light.ray(vector).truncate().dot(frame.axis) / frame.extent;
-        let top = frame.top.dot(frame.axis) / frame.extent;
-        // Anywhere in the body.
-        let mut sums = [0.0; 3];
-        let sheaf = Sheaf::over(camera, body, origin);
-        for index in 0..RAYS[0] * RAYS[1] {
-            let (start, direction) = sheaf.ray(index);
-            let Some([near, far]) = sheaf.span(start, direction) else { continue };
-            let (from, to) = (along(start + direction * near) - top, along(start + direction * far) - top);
-            let length = far - near;
-            sums[0] += length;
-            sums[1] += length * 0.5 * (from + to);
-            sums[2] += length * (from * from + from * to + to * to) / 3.0;
-        }
-        let in_body = [sums[1] / sums[0], sums[2] / sums[0]];
-        // Where surfaces are seen.
-        let mut seen = [0.0; 3];
-        for sample in samples {
-            let at = along(*sample - origin) - top;
-            if (0.0..=1.0).contains(&at) {
-                seen[0] += 1.0;
-                seen[1] += at;
-                seen[2] += at * at;
-            }
-        }
-        let trust = seen[0] / (seen[0] + ENOUGH_SAMPLES);
-        let in_picture = [seen[1], seen[2]].map(|sum| sum / seen[0].max(1.0));
-        // A body that no ray meets is a sliver: nothing is known of it, and (1, 1) wants no warp.
-        let moments = [0, 1].map(|i| {
-            let anywhere = if in_body[i].is_finite() { in_body[i].clamp(0.0, 1.0) } else { 1.0 };
-            anywhere + trust * (in_picture[i] - anywhere)
-        });
+    /// Along the axis of `frame`.
+    pub(crate) fn along(frame: &WarpFrame, seen: &Seen, sight: &Sight) -> Self {
         let points = sight.points.iter().map(|point| frame.coordinates(*point)).collect();
-        Self { points, extent: frame.extent, moments }
+        // u = axis · (x − eye) + shift.
+        let (axis, shift) = (frame.axis, frame.axis.dot(sight.eye - frame.top));
+        let mean = axis.dot(seen.mean);
+        let squares = DVec3::new(axis.x * axis.x, 2.0 * axis.x * axis.y, axis.y * axis.y).dot(seen.products);
+        let first = (mean + shift) / frame.extent;
+        let second = (squares + shift * (2.0 * mean + shift)) / (frame.extent * frame.extent);
+        // Nothing is seen (a sliver between rays): what wants no warp.
+        let share = |moment: f64| if moment.is_finite() { moment.clamp(0.0, 1.0) } else { 1.0 };
+        Self { points, extent: frame.extent, moments: [share(first), share(second)] }
     }
 
     /// E at κλ = `strength`, world units: the sides of a texel, if one texel were all there is.

@@ -29,12 +29,19 @@ pub(crate) struct Sight {
     pub(crate) points: ArrayVec<DVec2, MAX_VERTICES>,
     /// Their eye depths, within the camera's range.
     pub(crate) depths: ArrayVec<f64, MAX_VERTICES>,
+    /// Bounds of the points, relative to `eye`.
+    pub(crate) low: DVec2,
+    pub(crate) high: DVec2,
+    /// A point in the middle of their hull that moves continuously with them.
+    pub(crate) middle: DVec2,
     /// (p, q) of the eye.
     pub(crate) eye: DVec2,
     /// Width or height of a pixel at each of them, whichever is less, world units.
     pub(crate) pixel_sizes: ArrayVec<f64, MAX_VERTICES>,
     /// The view direction in (p, q): its length is the sine of the angle between light and view.
     pub(crate) view: DVec2,
+    /// Sine of the angle from the view axis to the picture's widest side, at least [`LEAST_SINE`].
+    pub(crate) half_angle_sine: f64,
     /// The picture's axes to the right and up in (p, q).
     pub(crate) right: DVec2,
     pub(crate) up: DVec2,
@@ -51,21 +58,42 @@ impl Sight {
             vertices().map(|vertex| camera.eye_depth(*vertex, origin).clamp(near, far)).collect();
         let per_depth = camera.pixels_per_unit().recip();
         let pixel_size = |depth: &f64| per_depth * if camera.projection.spreads() { *depth } else { 1.0 };
+        let eye = across(camera.eye() - origin);
+        let points: ArrayVec<DVec2, MAX_VERTICES> = vertices().map(|vertex| across(*vertex)).collect();
+        let bounds = |least: DVec2, fold: fn(DVec2, DVec2) -> DVec2| {
+            points.iter().fold(least, |bound, point| fold(bound, *point - eye))
+        };
         Self {
             light,
-            points: vertices().map(|vertex| across(*vertex)).collect(),
+            low: bounds(DVec2::INFINITY, DVec2::min),
+            high: bounds(DVec2::NEG_INFINITY, DVec2::max),
+            middle: middle(&points, eye),
+            points,
             pixel_sizes: depths.iter().map(pixel_size).collect(),
             depths,
-            eye: across(camera.eye() - origin),
+            eye,
             view: across(camera.forward()),
+            half_angle_sine: camera.projection.half_angle_sine().max(LEAST_SINE),
             right: across(camera.world_from_view.x_axis.truncate()),
             up: across(camera.world_from_view.y_axis.truncate()),
         }
     }
 
+    /// The frame of a warp along any direction.
+    pub(crate) fn frame_along(&self, axis: DVec2) -> WarpFrame {
+        WarpFrame::around(axis, self.eye, &self.points)
+    }
+
     /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest.
     pub(crate) fn frame(&self) -> WarpFrame {
-        WarpFrame::around(self.view, self.eye, &self.points)
+        self.frame_along(self.view)
+    }
+
+    /// How well the view has a direction across the light, 0 (view along the light) to 1 (the light is outside of the picture): smooth,
+    /// so that a warp along it is gone before its axis spins.
+    pub(crate) fn directed(&self) -> f64 {
+        let share = (self.view.length() / self.half_angle_sine).min(1.0);
+        share * share * (3.0 - 2.0 * share)
     }
 
     /// Nearest and farthest eye depth of the body.
@@ -74,4 +102,26 @@ impl Sight {
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), depth| (near.min(*depth), far.max(*depth)))
     }
+}
+
+/// Views within this sine of the light have no direction whatever the lens: telephoto and orthographic cameras too need room in which to
+/// fade. Smaller lets axes spin within a frame; larger gives up warps that would serve.
+const LEAST_SINE: f64 = 0.05;
+
+/// Directions in which [`middle`] looks. With 4 it would be the middle of a box; more follow the hull's shape, and cost time.
+const DIRECTIONS: u32 = 12;
+
+/// The Steiner point of the hull of some points: the mean of its extreme points over all directions, here over a dozen.
+///
+/// Continuous, unlike the mean of the vertices, and inside the hull. `near` is where numbers are small.
+fn middle(points: &[DVec2], near: DVec2) -> DVec2 {
+    let step = DVec2::from_angle(core::f64::consts::TAU / f64::from(DIRECTIONS));
+    let mut direction = DVec2::X;
+    let mut sum = DVec2::ZERO;
+    for _ in 0..DIRECTIONS {
+        let support = points.iter().map(|point| direction.dot(*point - near)).fold(f64::NEG_INFINITY, f64::max);
+        sum += direction * support;
+        direction = step.rotate(direction);
+    }
+    near + sum * (2.0 / f64::from(DIRECTIONS))
 }
