@@ -219,9 +219,9 @@ fn findings(remix: &Remix) -> Findings {
     found
 }
 
-/// What may remain of a step after 24 halvings, texels of 1024: rounding of f32 matrices, and the search for a strength, which is exact to
-/// 1e-4 of it. Smaller calls that a jump; larger misses jumps that are seen.
-const MOST_REMAINS: f64 = 0.5;
+/// What may remain of a step after 24 halvings, texels of 1024: strengths are searched to 3e-5, and where two windows are equally small a
+/// window turns much faster than its strength changes. Measured: up to 1.5 texels on one path in a hundred, hundredths else. A jump leaves tens.
+const MOST_REMAINS: f64 = 3.0;
 
 /// Guarded warps and least-error follow the camera and the light without a jump, through the direction of light too.
 #[test]
@@ -247,4 +247,4 @@ fn warped_maps_are_continuous() {
 }
 
 /// Paths of a thousand on which the guarded perspective map jumps.
-const MOST_PSM_JUMPS: usize = 20;
+const MOST_PSM_JUMPS: usize = 5;
