@@ -49,14 +49,14 @@ impl Layout {
 }
 
 impl Fitter<'_> {
-    /// The window of least area around a body.
+    /// The window of nearly least area around a body.
     pub(crate) fn tight(&self, body: FocusBody) -> Layout {
         let margin = rounding_margin(&body.vertices, self.input.origin);
-        let window = Window::least_area(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin);
+        let window = Window::steady(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin);
         Layout::uniform(body, window)
     }
 
-    /// The window of least area around what is in view; around the whole scene where that has hardly larger texels, because
+    /// The window of nearly least area around what is in view; around the whole scene where that has hardly larger texels, because
     /// a map that does not follow the camera need not be drawn anew.
     pub(crate) fn focused(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
         let tight = self.tight(body);

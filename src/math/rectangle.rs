@@ -8,31 +8,8 @@
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-/// Axis (unit) of the rectangle of least area around `points`; `None` when they have no area (fewer than three corners).
-///
-/// Exact up to rounding. Time O(n log n + h²) for h hull vertices; no allocation. `CAP` must hold all points.
-pub(crate) fn least_area_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>) -> Option<DVec2> {
-    let hull = hull::<CAP>(points);
-    if hull.len() < 3 {
-        return None;
-    }
-    let mut best = None;
-    let mut best_area = f64::INFINITY;
-    for (index, &from) in hull.iter().enumerate() {
-        let to = hull[(index + 1) % hull.len()];
-        // Not normalised: both extents come out longer by the edge's length.
-        let edge = to - from;
-        let area = extent(&hull, edge).element_product() / edge.length_squared();
-        if area < best_area {
-            best_area = area;
-            best = Some(edge);
-        }
-    }
-    best?.try_normalize()
-}
-
 /// How much larger than the least a rectangle is when it still has 1/e of its weight, as a share of the least area. At 0 the axis jumps from
-/// edge to edge as [`least_area_axis`] does; at 1 every direction weighs alike, and the axis wanders.
+/// edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis wanders.
 const SOFTNESS: f64 = 0.03;
 
 /// Axis (unit) of a rectangle around `points` that is nearly the smallest, and turns continuously with them; `None` when they have no area.
@@ -117,6 +94,29 @@ fn half_chain<const CAP: usize>(chain: &mut ArrayVec<DVec2, CAP>, points: impl I
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// Axis (unit) of the rectangle of least area around `points`; `None` when they have no area (fewer than three corners).
+    ///
+    /// Exact up to rounding. Time O(n log n + h²) for h hull vertices; no allocation. `CAP` must hold all points.
+    fn least_area_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>) -> Option<DVec2> {
+        let hull = hull::<CAP>(points);
+        if hull.len() < 3 {
+            return None;
+        }
+        let mut best = None;
+        let mut best_area = f64::INFINITY;
+        for (index, &from) in hull.iter().enumerate() {
+            let to = hull[(index + 1) % hull.len()];
+            // Not normalised: both extents come out longer by the edge's length.
+            let edge = to - from;
+            let area = extent(&hull, edge).element_product() / edge.length_squared();
+            if area < best_area {
+                best_area = area;
+                best = Some(edge);
+            }
+        }
+        best?.try_normalize()
+    }
 
     #[test]
     fn a_turned_rectangle_is_found() {

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, DVec4};
 use super::bend::Bend;
 use crate::light_space::LightSpace;
 use crate::math::convex::MAX_VERTICES;
-use crate::math::rectangle::{least_area_axis, steady_axis};
+use crate::math::rectangle::steady_axis;
 use crate::math::space::{Clip, Map, Ray};
 
 /// The extent of a map across the light: a rectangle of bent (p, q) in the map's own frame.
@@ -35,13 +35,6 @@ impl Window {
             (low.min(bent - reach), high.max(bent + reach))
         });
         Self { light, bend, low, high }
-    }
-
-    /// The same, in the frame in which the window is smallest (least area); `bend` is in the frame `light`.
-    pub(crate) fn least_area(light: LightSpace, bend: Bend, vertices: &[DVec3], margin: f64) -> Self {
-        let across = vertices.iter().map(|vertex| bend.bent(light.ray(*vertex).truncate()));
-        let axis = least_area_axis::<MAX_VERTICES>(across).unwrap_or(DVec2::X);
-        Self::turned(light, bend, axis, vertices, margin)
     }
 
     /// The same, in a frame in which the window is nearly the smallest, and that turns continuously with the body.
