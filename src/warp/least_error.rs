@@ -8,7 +8,7 @@
 //! ```text
 //! (1)  E(κ) = (a1 − a0) ⟨W⟩ + λ/k √(1 + κ² m) ⟨W²⟩,   W = 1 + κu,  k = 1 + κλ,  m = (a0² + a0 a1 + a1²)/3
 //! (2)  ⟨f⟩ = (1 − τ) Σ rays ∫ f(u(ζ)) dζ + τ Σ samples f(u)
-//! (3)  reluctance: E(κ) is made dearer by 0.15 κλ / (1 + κλ)
+//! (3)  reluctance: E(κ) is made dearer by 0.2 κλ / (1 + κλ)
 //! ```
 //!
 //! The first summand of (1) is the side of a texel across the axis, the second the one along it, which slants with the side lines. The
@@ -41,8 +41,8 @@ const RAYS: [u32; 2] = [7, 5];
 const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per cent, strengths too strong
-/// by half cost twice that. Measured: 0.15 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
-const RELUCTANCE: f64 = 0.15;
+/// by half cost twice that. Measured: 0.2 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
+const RELUCTANCE: f64 = 0.2;
 
 /// What is seen, across the light: means and mean products of (p, q), relative to the eye.
 #[derive(Clone, Copy, Debug)]
