@@ -10,7 +10,7 @@ struct AntumbraView {
     // unit; size of dot(depth row, normal) below which a surface grazes the light.
     texel: vec4f,
     // Texels that rounding adds to a filter's reach, manual normal offset (world units), by how much of itself a texel of a
-    // warped map outgrows its neighbour for each unit of w, 0.
+    // warped map outgrows its neighbours for each unit of w, side of a texel (texture coordinates).
     bias: vec4f,
     // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,

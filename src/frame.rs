@@ -237,18 +237,20 @@ pub struct ViewUniforms {
     /// `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along the light.
     /// w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
     pub texel: [f32; 4],
-    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: by
-    /// how much of itself a texel of a warped map outgrows its neighbour, for each unit of w. w: 0.
+    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: warped maps: by how much
+    /// of itself a texel outgrows its neighbours in u and in v together, for each unit of w; 0 without automatic bias. w: side of
+    /// a texel, texture coordinates.
     pub bias: [f32; 4],
     /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
     /// that lookups beyond the window read lit.
     pub rect: [f32; 4],
-    /// Warped maps: n · `across_v.xyz` − v n · `across_w.xyz`, times w², is how far a plane of normal n falls over one texel step in u,
-    /// along its normal, world units; 0 without automatic bias.
+    /// Warped maps: how far a plane of normal n falls over a texel step at (u, v), along its normal and in world units, is
+    /// w² (n·V − v n·W) for a step in u and w² (u n·W − n·U) for a step in v, with U this row, V `across_v` and W `across_w`
+    /// (x, y, z of each; the last member is 0). All 0 without automatic bias.
     pub across_u: [f32; 4],
-    /// The same for steps in v, of u, with the opposite sign: u n · `across_w.xyz` − n · `across_u.xyz`.
+    /// Warped maps: V of `across_u`.
     pub across_v: [f32; 4],
-    /// What both share.
+    /// Warped maps: W of `across_u`.
     pub across_w: [f32; 4],
 }
 

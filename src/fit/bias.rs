@@ -6,6 +6,24 @@
 //! short (which moves no shadow edge), along the normal where the surface grazes the light and the distance along the
 //! light would grow as the tangent.
 //!
+//! # Warped maps
+//! A texel's size differs from texel to texel there, and moving along the normal moves through texels of any size. So receivers of
+//! warped maps move *across* the light, by a number of texels, instead of along their normal:
+//!
+//! ```text
+//! (1)  x(Δ) − x = J⁻¹Δ / (1 − g·Δ)          the texel Δ texels away; exact: warps map lines to lines
+//! (2)  h(Δ) = fall·Δ / (1 − g·Δ)            how far above its plane a point is that the receiver moves to; fall = n·J⁻¹
+//! (3)  δ = (1 − c) R fall (|fall_u| + |fall_v|) / fall·fall,   so that fall·δ = (1 − c) R (|fall_u| + |fall_v|)
+//! (4)  lift ≥ (tap + R G) / (1 − G)         steps of the fall along the light, G ≥ |g·Δ|
+//! ```
+//!
+//! J is the derivative of texels by place across the light at the receiver, g how much a texel outgrows its neighbours there, R the
+//! reach, c the share of the lift along the light, 1 down to a cosine of [`GRAZING_COSINE`] and falling to 0 with the cosine. Lit is
+//! what has h(δ + Δ) + c lift − c fall·o ≥ 0 for all texels Δ of a tap at o, |Δ| ≤ R, |Δ − o| ≤ tap. Times 1 − g·(δ + Δ) > 0 it falls
+//! into the part of 1 − c, R (|fall_u| + |fall_v|) + fall·Δ ≥ 0, in which no growth appears, and the part of c, which (4) satisfies.
+//! (3) is at most (1 + √2)/2 of the reach along either axis, whatever the shape of texels, and stays within the map's border. In
+//! a map of square, equal texels it is the way along the normal, but for the square of the sine of incidence.
+//!
 //! # References
 //! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|), bounded.
 
@@ -100,7 +118,7 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_reach, offset, growth * automatic, 0.0].map(narrowed);
+        uniforms.bias = [lost_reach, offset, growth * automatic, 1.0 / input.side].map(narrowed);
         // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
         let depth = input.clip_from_render.row(2);
         uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
