@@ -16,8 +16,9 @@ const ANTUMBRA_SMALLEST: f32 = 1e-37;
 // Texels along an axis that a receiver moves by for each texel of reach, at most: (a + b) a / (a a + b b).
 const ANTUMBRA_MOST_SHIFT: f32 = 1.2072;
 
-// As antumbra_lookup, for a warped map: positions are divided by w, and the size of a texel is that at the receiver (bias.rs
-// derives it). Where a surface grazes the light, the receiver moves across the light alone, by texels, which no warp magnifies.
+// As antumbra_lookup, for a warped map: positions are divided by w, and the size of a texel is that at the receiver
+// (bias.rs derives it). Where a surface grazes the light, the receiver moves across the light alone, by texels, which
+// no warp magnifies.
 // reach: texels from the receiver to the farthest texel read; tap_reach: the same for one tap of the filter.
 fn antumbra_lookup_projective(view: AntumbraView, position: vec3f, normal: vec3f, reach: f32, tap_reach: f32) -> AntumbraLookup {
     let at = vec4f(position + normal * view.bias.y, 1.0);
@@ -30,7 +31,7 @@ fn antumbra_lookup_projective(view: AntumbraView, position: vec3f, normal: vec3f
     let shared_fall = dot(view.across_w.xyz, normal);
     let fall = w * w * vec2f(dot(view.across_v.xyz, normal) - uv.y * shared_fall, uv.x * shared_fall - dot(view.across_u.xyz, normal));
     let step = abs(fall.x) + abs(fall.y);
-    // Cosines are in depth per world unit. The share of the lift that is not along the light moves the receiver up the fall.
+    // Cosines are in depth per world unit. What is not lifted along the light moves up the fall instead.
     let cosine = -dot(view.depth_from_render.xyz, normal);
     let inverse = 1.0 / max(abs(cosine), view.texel.w);
     let across = 1.0 - abs(cosine) * inverse;

@@ -346,8 +346,8 @@ fn within(name: &str, shader: f32, (low, high): (f32, f32), scale: f32, case: &C
     }
 }
 
-/// A frame over a box of ten units, automatic or manual; warped as a paper does, or by a strength that maps of some thousand
-/// texels take, from hardly any on.
+/// A frame over a box of ten units, automatic or manual; warped as a paper does, or by a strength that maps of some
+/// thousand texels take, from hardly any on.
 fn frame(random: &mut Random, key: WgslKey, side: u32, index: usize) -> ShadowFrame {
     let travel = (DVec3::new(0.0, -1.0, 0.0) + random.vector(0.9).as_dvec3()).normalize();
     let bias = match index % 4 {
@@ -506,21 +506,20 @@ fn fill(gpu: &Gpu, maps: &ShadowMaps, frame: &ShadowFrame, depth: &[f32]) {
     gpu.queue().submit([encoder.finish()]);
 }
 
-/// Runs the cases on the adapter.
-fn run(gpu: &Gpu, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome> {
-    // The text: the library, the cases, and calls that only some keys have.
+/// The text of a key: the library, the cases, and calls that only some keys have.
+fn text(key: WgslKey) -> String {
     let no_tap = "fn tap(look: AntumbraLookup, offset: vec2f) -> f32 { return 0.0; }";
     let tap = "fn tap(look: AntumbraLookup, offset: vec2f) -> f32 {
         return antumbra_tap(antumbra_map, antumbra_compare, look, offset); }";
     let no_row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 { return 0.0; }";
     let row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 {
         return antumbra_box_row(antumbra_map, antumbra_compare, look, x, weight, y); }";
-    let [tap, row] = match maps.key().filter {
+    let [tap, row] = match key.filter {
         Pcf::Point | Pcf::Hardware2x2 => [no_tap, no_row],
         Pcf::Box3x3 => [tap, no_row],
         Pcf::Box5x5 => [tap, row],
     };
-    let looks = match maps.key().shape {
+    let looks = match key.shape {
         MapShape::Affine => {
             "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
                 return antumbra_lookup(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
@@ -532,8 +531,13 @@ fn run(gpu: &Gpu, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome> {
             fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_visibility(position, normal, 1.0); }"
         }
     };
-    let library = wgsl::module(maps.key(), Bindings { group: 1, first: 0 });
-    let text = [library.as_str(), include_str!("twins.wgsl"), looks, tap, row].join("\n");
+    let library = wgsl::module(key, Bindings { group: 1, first: 0 });
+    [library.as_str(), include_str!("twins.wgsl"), looks, tap, row].join("\n")
+}
+
+/// Runs the cases on the adapter.
+fn run(gpu: &Gpu, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome> {
+    let text = text(maps.key());
     // The pipeline.
     let device = gpu.device();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

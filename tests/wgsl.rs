@@ -17,7 +17,8 @@ fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
     })
 }
 
-/// An engine's shader around `antumbra_visibility`, with names that an engine would choose, and what a shape adds to it.
+/// An engine's shader around `antumbra_visibility`, with names that an engine would choose, and what a shape adds to
+/// it.
 fn host(key: WgslKey, bindings: Bindings) -> String {
     let engine = "
         struct View { clip_from_world: mat4x4f, depth_from_world: vec4f, eye: vec4f }
@@ -38,8 +39,8 @@ fn host(key: WgslKey, bindings: Bindings) -> String {
     [wgsl::module(key, bindings).as_str(), engine, of_shape(key.shape)].concat()
 }
 
-/// Casters of an affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map carry their
-/// linear depth from the vertices to the fragments, which write it.
+/// Casters of an affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map
+/// carry their linear depth from the vertices to the fragments, which write it.
 fn of_shape(shape: MapShape) -> &'static str {
     match shape {
         MapShape::Affine => "
@@ -427,7 +428,8 @@ fn host_on_wgpu(shape: MapShape) -> &'static str {
     }
 }
 
-/// A pipeline of a vertex entry point and, but for casters of affine maps, a fragment entry point. Casters write no colour.
+/// A pipeline of a vertex entry point and, but for casters of affine maps, a fragment entry point. Casters write no
+/// colour.
 fn make_pipeline(
     device: &gpu::wgpu::Device,
     text: &str,

@@ -1,8 +1,8 @@
-//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `pcf_*.wgsl`, `visibility_one*.wgsl` and
-//! `caster.wgsl`.
+//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `pcf_*.wgsl`, `visibility_one*.wgsl`
+//! and `caster.wgsl`.
 //!
-//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs` holds
-//! them together on an adapter. The software renderer of the lab runs on them.
+//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs`
+//! holds them together on an adapter. The software renderer of the lab runs on them.
 //!
 //! # References
 //! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987 (percentage-closer filtering).
@@ -228,8 +228,8 @@ mod tests {
     }
 
     proptest! {
-        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and across
-        /// a straight edge it is the box's overlap with the lit half.
+        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and
+        /// across a straight edge it is the box's overlap with the lit half.
         #[test]
         fn filters_average(u in 0.3..0.7_f32, v in 0.3..0.7_f32, index in 0..4_usize) {
             let filter = Pcf::ALL[index];

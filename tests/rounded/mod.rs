@@ -1,7 +1,7 @@
 //! Numbers with a bound of what f32 may have done to them: the lookup in warped maps, operation by operation.
 //!
-//! Compilers may reassociate sums and contract products, so that each operation counts two roundings, a division five (WGSL
-//! promises 2.5 units in the last place), and a dot product that of all its terms.
+//! Compilers may reassociate sums and contract products, so that each operation counts two roundings, a division five
+//! (WGSL promises 2.5 units in the last place), and a dot product that of all its terms.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -108,7 +108,8 @@ pub(crate) fn behind(view: &ViewUniforms, position: Vec3, normal: Vec3) -> bool 
     w.value < -w.error
 }
 
-/// Bounds of u, v, depth, and slope in u and in v of `antumbra_lookup_projective`; `None` where w may or may not be positive.
+/// Bounds of u, v, depth, and slope in u and in v of `antumbra_lookup_projective`; `None` where w may or may not be
+/// positive.
 pub(crate) fn lookup_projective(view: &ViewUniforms, position: Vec3, normal: Vec3, filter: Pcf) -> Option<[f64; 5]> {
     let exact = |value: f32| Rounded::exact(value);
     let one = Rounded::exact(1.0);
