@@ -6,11 +6,11 @@ struct AntumbraView {
     w_from_render: vec4f,
     // Row: light depth in [0, 1], linear in position, less the constant bias.
     depth_from_render: vec4f,
-    // Fall of a plane over one texel step in u and in v, for each unit of dot(row, normal); square of the depth per world
-    // unit; size of dot(depth row, normal) below which a surface grazes the light.
+    // Fall of a plane over one texel step in u and in v, for each unit of dot(row, normal); square of the depth per
+    // world unit; size of dot(depth row, normal) below which a surface grazes the light.
     texel: vec4f,
-    // Texels that rounding adds to a filter's reach, manual normal offset (world units), by how much of itself a texel of a
-    // warped map outgrows its neighbour for each unit of w, 0.
+    // Texels that rounding adds to a filter's reach, manual normal offset (world units), by how much of itself a texel
+    // of a warped map outgrows its neighbours for each unit of w, side of a texel (texture coordinates).
     bias: vec4f,
     // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,

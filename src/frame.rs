@@ -31,7 +31,7 @@ pub enum MapShape {
     /// Affine, w = 1: uniform maps. Casters need no fragment shader.
     #[default]
     Affine,
-    /// Projective: warped maps. Casters write their linear depth themselves.
+    /// Projective: warped maps. Fragments of casters write their linear depth.
     Projective,
 }
 
@@ -130,7 +130,8 @@ impl ShadowFrame {
 /// One map to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowView {
-    /// Render space (world − `origin`) to the map's clip space; z is linear in depth for directional light.
+    /// Render space (world − `origin`) to the map's clip space; z is linear in depth for directional light, and is not
+    /// divided by w where the map is warped: fragments of casters write it ([`MapShape`]).
     pub clip_from_render: Mat4,
     /// Linear light depth in [0, 1] of a render-space position: `dot(depth_from_render, (x, y, z, 1))`.
     pub depth_from_render: Vec4,
@@ -167,8 +168,8 @@ pub struct Footprint {
     pub min: f32,
     /// Largest, pixels.
     pub max: f32,
-    /// Predicted picture error: the mean side of a texel over what is seen, world units. Pixels that are wrong are proportional to it, so that it ranks
-    /// maps of one picture. Kind of promise: typical (`docs/WARPS.md`).
+    /// Predicted picture error: the mean side of a texel over what is seen, world units. Pixels that are wrong are
+    /// proportional to it, so that it ranks maps of one picture. Kind of promise: typical (`docs/WARPS.md`).
     pub error: f32,
 }
 
@@ -233,22 +234,24 @@ pub struct ViewUniforms {
     pub w_from_render: [f32; 4],
     /// Linear light depth in [0, 1], less the constant bias: a row.
     pub depth_from_render: [f32; 4],
-    /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each unit of
-    /// `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along the light.
-    /// w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
+    /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each
+    /// unit of `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along
+    /// the light. w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
     pub texel: [f32; 4],
-    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: by
-    /// how much of itself a texel of a warped map outgrows its neighbour, for each unit of w. w: 0.
+    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: warped maps: by
+    /// how much of itself a texel outgrows its neighbours in u and in v together, for each unit of w; 0 without
+    /// automatic bias. w: side of a texel, texture coordinates.
     pub bias: [f32; 4],
-    /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay cleared, so
-    /// that lookups beyond the window read lit.
+    /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay
+    /// cleared, so that lookups beyond the window read lit.
     pub rect: [f32; 4],
-    /// Warped maps: n · `across_v.xyz` − v n · `across_w.xyz`, times w², is how far a plane of normal n falls over one texel step in u,
-    /// along its normal, world units; 0 without automatic bias.
+    /// Warped maps: how far a plane of normal n falls over a texel step at (u, v), along its normal and in world units,
+    /// is w² (n·V − v n·W) for a step in u and w² (u n·W − n·U) for a step in v, with U this row, V `across_v` and W
+    /// `across_w` (x, y, z of each; the last member is 0). All 0 without automatic bias.
     pub across_u: [f32; 4],
-    /// The same for steps in v, of u, with the opposite sign: u n · `across_w.xyz` − n · `across_u.xyz`.
+    /// Warped maps: V of `across_u`.
     pub across_v: [f32; 4],
-    /// What both share.
+    /// Warped maps: W of `across_u`.
     pub across_w: [f32; 4],
 }
 

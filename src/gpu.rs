@@ -1,8 +1,8 @@
 //! Feature `wgpu`: the textures, bind groups and passes of one light's shadow maps.
 //!
 //! Middleware: the device, the queue, the encoder and every submission belong to the engine. Nothing here creates a
-//! device, submits, polls or waits, and after [`ShadowMaps::new`] nothing allocates beyond what wgpu does when it is told
-//! to upload and to begin a pass.
+//! device, submits, polls or waits, and after [`ShadowMaps::new`] nothing allocates beyond what wgpu does when it is
+//! told to upload and to begin a pass.
 //!
 //! The map keeps its own depth convention (0 nearest to the light), so it serves engines with reversed depth unchanged.
 //!
@@ -10,8 +10,9 @@
 //! use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor, wgpu};
 //! use antumbra::{FitInput, ShadowTechnique, wgsl};
 //!
+//! # type Failure = Box<dyn std::error::Error>;
 //! # fn engine(device: &wgpu::Device, queue: &wgpu::Queue, technique: &dyn ShadowTechnique, input: &FitInput,
-//! #     casters: &wgpu::RenderPipeline, draw: &dyn Fn(&mut wgpu::RenderPass)) -> Result<(), Box<dyn std::error::Error>> {
+//! #     casters: &wgpu::RenderPipeline, draw: &dyn Fn(&mut wgpu::RenderPass)) -> Result<(), Failure> {
 //! // When options change: maps, and the text that goes in front of the lighting shader.
 //! let key = technique.wgsl_key();
 //! let maps = ShadowMaps::new(device, &ShadowMapsDescriptor { label: Some("sun"), key, map: input.map })?;
@@ -30,6 +31,26 @@
 //! queue.submit([encoder.finish()]);
 //! # let _ = lighting; Ok(())
 //! # }
+//! ```
+//!
+//! The casters' pipeline is the engine's own, with [`wgsl::CASTER`](crate::wgsl::CASTER) in its shader. Casters of uniform
+//! maps ([`MapShape::Affine`](crate::MapShape::Affine)) need no fragment shader. Casters of warped maps
+//! ([`MapShape::Projective`](crate::MapShape::Projective)) carry their linear depth from vertices to fragments, which
+//! write it:
+//!
+//! ```wgsl
+//! struct View { clip_from_render: mat4x4f, depth_from_render: vec4f }
+//! @group(0) @binding(0) var<uniform> view: View; // `maps.caster_bind_group()`
+//! struct Caster { @builtin(position) clip: vec4f, @location(0) depth: f32 }
+//!
+//! @vertex fn cast(@location(0) position: vec3f) -> Caster { // `position` in render space
+//!     let clip = antumbra_caster(view.clip_from_render, position);
+//!     return Caster(clip, antumbra_caster_depth(view.depth_from_render, position));
+//! }
+//!
+//! @fragment fn write_depth(caster: Caster) -> @builtin(frag_depth) f32 {
+//!     return caster.depth;
+//! }
 //! ```
 
 mod error;
@@ -197,7 +218,8 @@ impl ShadowMaps {
         pass
     }
 
-    /// The key that these maps were made for: pipelines that read them need [`wgsl::module`](crate::wgsl::module) of it.
+    /// The key that these maps were made for: pipelines that read them need [`wgsl::module`](crate::wgsl::module) of
+    /// it.
     #[must_use]
     pub fn key(&self) -> WgslKey {
         self.key
@@ -210,7 +232,8 @@ impl ShadowMaps {
         &self.layout
     }
 
-    /// What the receivers' functions read, in vertex and fragment stages, for shader text made with `Bindings { group, first: 0 }`.
+    /// What the receivers' functions read, in vertex and fragment stages, for shader text made with `Bindings { group,
+    /// first: 0 }`.
     #[must_use]
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bind_group
@@ -222,14 +245,14 @@ impl ShadowMaps {
         bind_entries(self.key, first, &self.uniforms, &self.view, &self.compare)
     }
 
-    /// Layout of [`caster_bind_group`](Self::caster_bind_group): binding 0 at a dynamic offset, visible to vertex shaders:
-    /// `clip_from_render: mat4x4f`, and after it, for warped maps, `depth_from_render: vec4f`.
+    /// Layout of [`caster_bind_group`](Self::caster_bind_group): binding 0 at a dynamic offset, visible to vertex
+    /// shaders: `clip_from_render: mat4x4f`, and after it, for warped maps, `depth_from_render: vec4f`.
     #[must_use]
     pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
         &self.caster_layout
     }
 
-    /// The views' matrices, for engines that do not bring their own.
+    /// The views' matrices and depth rows, for engines that do not bring their own.
     #[must_use]
     pub fn caster_bind_group(&self) -> &wgpu::BindGroup {
         &self.caster_bind_group
@@ -280,8 +303,9 @@ pub fn depth_stencil_state() -> wgpu::DepthStencilState {
     }
 }
 
-/// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's own:
-/// uniforms, map, comparison sampler. `antumbra_place` needs them where it is called: vertices as well as fragments.
+/// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's
+/// own: uniforms, map, comparison sampler. `antumbra_place` needs them where it is called: vertices as well as
+/// fragments.
 #[must_use]
 pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 3] {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding: first + binding, visibility, ty, count: None };

@@ -1,31 +1,32 @@
 //! From a key to shader text: the fragments it needs and no others.
 //!
-//! The fragments are plain WGSL without bindings, entry points, overrides or directives, and every item carries the prefix
-//! `antumbra_`, `Antumbra` or `ANTUMBRA_`. [`library`] is their concatenation order; [`module`] adds the bindings, with
-//! numbers chosen by the caller, and the function an engine calls:
+//! The fragments are plain WGSL without bindings, entry points, overrides or directives, and every item carries the
+//! prefix `antumbra_`, `Antumbra` or `ANTUMBRA_`. [`library`] is their concatenation order; [`module`] adds the
+//! bindings, with numbers chosen by the caller, and the function an engine calls:
 //!
 //! ```wgsl
 //! fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32
 //! ```
 //!
-//! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked at,
-//! `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
+//! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked
+//! at, `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
 //!
-//! The same in two stages, for affine maps (uniform ones; see [`MapShape`]) and engines that want the cheapest fragments:
+//! The same in two stages, for affine maps (uniform ones; see [`MapShape`]) and engines that want the cheapest
+//! fragments:
 //!
 //! ```wgsl
 //! fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup   // in the vertex stage
 //! fn antumbra_lit(look: AntumbraLookup) -> f32                          // in the fragment stage
 //! ```
 //!
-//! `AntumbraLookup` has the members `uv: vec2f`, `depth: f32` and `slope: vec2f`, in this order; carry `uv` and `depth` from
-//! stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`] and [`Pcf::Box5x5`] (the other
-//! filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
+//! `AntumbraLookup` has the members `uv: vec2f`, `depth: f32` and `slope: vec2f`, in this order; carry `uv` and `depth`
+//! from stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`] and [`Pcf::Box5x5`]
+//! (the other filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
 //!
-//! Kind of promise: exact, up to rounding, where all vertices of a triangle are given one normal, because all members are then
-//! linear in position (`slope` is constant). With smooth normals the bias is interpolated: near enough on triangles that are
-//! small beside the curvature, too little across large ones, where acne may show; those take `antumbra_visibility`. Choose the
-//! side that is looked at from the eye position; all vertices of a face then agree.
+//! Kind of promise: exact, up to rounding, where all vertices of a triangle are given one normal, because all members
+//! are then linear in position (`slope` is constant). With smooth normals the bias is interpolated: near enough on
+//! triangles that are small beside the curvature, too little across large ones, where acne may show; those take
+//! `antumbra_visibility`. Choose the side that is looked at from the eye position; all vertices of a face then agree.
 
 use core::fmt::Write as _;
 
@@ -80,7 +81,8 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     fragments
 }
 
-/// The caster stage alone, for the vertex shader of a depth pass: `antumbra_caster(clip_from_render, position)`.
+/// The caster stage alone, for the shader of a depth pass: `antumbra_caster(clip_from_render, position)`, and for warped
+/// maps `antumbra_caster_depth(depth_from_render, position)`, a varying that the fragment stage writes as its depth.
 pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
@@ -96,7 +98,8 @@ fn antumbra_lit(look: AntumbraLookup) -> f32 {
 }
 ";
 
-/// The whole text for an engine's shader: library, bindings, `antumbra_visibility`, and the same in two stages.
+/// The whole text for an engine's shader: library, bindings, `antumbra_visibility`, and for affine maps the same in two
+/// stages.
 ///
 /// Cold path: call it when options change, not per frame.
 #[must_use]

@@ -11,6 +11,7 @@ use antumbra::lab::experiment::{Backend, BackendChoice, Shot, Studio};
 use antumbra::lab::metrics::Scores;
 use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::TruthCache;
+use antumbra::warp::Warp;
 use antumbra::{Encoding, Pcf, Remix, techniques};
 
 /// Runs `check` over the shared cases and one built-in viewpoint a scene.
@@ -113,28 +114,68 @@ const MOST_DIFFERENT: f64 = 0.005;
 /// A visible difference, of 255.
 const VISIBLE: u8 = 8;
 
-#[test]
-fn gpu_and_software_masks_agree() {
-    let mut gpu = match Backend::open(BackendChoice::Gpu) {
-        Ok((gpu, _)) => gpu,
+/// Both renderers, GPU first; nothing where no adapter is to be expected.
+fn both() -> Option<[Backend; 2]> {
+    match Backend::open(BackendChoice::Gpu) {
+        Ok((gpu, _)) => Some([gpu, Backend::Cpu]),
         Err(why) if std::env::var("ANTUMBRA_NO_GPU").is_ok_and(|value| value == "1") => {
             println!("skipped, ANTUMBRA_NO_GPU=1: {why}");
-            return;
+            None
         }
         Err(why) => panic!("{why}"),
-    };
-    println!("GPU test: gpu_and_software_masks_agree on {}", gpu.adapter());
+    }
+}
+
+/// Checks that the masks of both renderers agree.
+fn agree(both: &mut [Backend; 2], assignment: &Assignment, case: &Case, name: &str, remix: &Remix, size: u32) {
+    let [ours, twin] = both.each_mut().map(|backend| shoot(backend, assignment, case, remix, size).mask);
+    assert_eq!(ours.len(), twin.len());
+    let different = ours.iter().zip(&twin).filter(|(a, b)| a.abs_diff(**b) > VISIBLE).count();
+    let share = different as f64 / ours.len() as f64;
+    println!("{} {name} {size}: {:.4} % of the pixels differ visibly", case.name, 100.0 * share);
+    assert!(share <= MOST_DIFFERENT, "{} {name} {size}: {share}", case.name);
+}
+
+#[test]
+fn gpu_and_software_masks_agree() {
+    let Some(mut both) = both() else { return };
+    println!("GPU test: gpu_and_software_masks_agree on {}", both[0].adapter());
     over_cases(|assignment, case| {
         for (name, technique) in techniques::NAMED {
             for size in [512, 2048] {
-                let ours = shoot(&mut gpu, assignment, case, &technique(), size).mask;
-                let twin = shoot(&mut Backend::Cpu, assignment, case, &technique(), size).mask;
-                assert_eq!(ours.len(), twin.len());
-                let different = ours.iter().zip(&twin).filter(|(a, b)| a.abs_diff(**b) > VISIBLE).count();
-                let share = different as f64 / ours.len() as f64;
-                println!("{} {name} {size}: {:.4} % of the pixels differ visibly", case.name, 100.0 * share);
-                assert!(share <= MOST_DIFFERENT, "{} {name} {size}: {share}", case.name);
+                agree(&mut both, assignment, case, name, &technique(), size);
             }
+        }
+    });
+}
+
+/// Shared cases on which the strongest warps are tried besides the built-in ones.
+const STRONG_CASES: usize = 3;
+
+/// The same where nothing limits a warp but the map, and with every filter.
+#[test]
+fn gpu_and_software_masks_agree_on_unguarded_warps() {
+    let Some(mut both) = both() else { return };
+    println!("GPU test: gpu_and_software_masks_agree_on_unguarded_warps on {}", both[0].adapter());
+    let fixed = |strength| Remix { warp: Warp::Fixed { strength }, ..Remix::default() };
+    let warps = [
+        ("psm", techniques::psm()),
+        ("tsm", techniques::tsm()),
+        ("lispsm", techniques::lispsm()),
+        ("minimax", techniques::minimax()),
+        ("fixed 3", fixed(3.0)),
+        ("fixed 300", fixed(300.0)),
+    ];
+    let mut left = 2 + STRONG_CASES;
+    over_cases(|assignment, case| {
+        if left == 0 {
+            return;
+        }
+        left -= 1;
+        for (index, (name, remix)) in warps.iter().enumerate() {
+            let filter = Pcf::ALL[index % Pcf::ALL.len()];
+            let remix = Remix { guard: false, encoding: Encoding::Depth(filter), ..*remix };
+            agree(&mut both, assignment, case, &format!("{name} {}", filter.name()), &remix, 1024);
         }
     });
 }

@@ -1,24 +1,27 @@
 //! Shader functions against their Rust twins, on an adapter.
 //!
 //! Both sides round every operation, in an order that compilers may change, so two bounds hold:
-//! - a lookup differs by the rounding of its own formula, propagated to first order ([`LookupBound`]);
+//! - a lookup differs by the rounding of its own formula, propagated to first order ([`LookupBound`]; for warped maps, operation
+//!   by operation: [`Rounded`]);
 //! - a comparison can tip over where depths are that close, and a texel change where coordinates are; the result then
 //!   lies between the twin's values on both sides of the doubt. Samplers may keep 8 bits of the place between texels,
 //!   rounded (as the twin does) or cut, or all of them: that changes a weight by at most 1/256 along each axis, and so
 //!   any mean of taps by at most 2/256. (llvmpipe keeps all bits, half a step from the twin: it stays below 1/256.)
 
+mod rounded;
 mod support;
 
 use antumbra::encoding::depth::{
-    CompareMap, DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_filter, antumbra_lookup, antumbra_tap,
-    antumbra_visible,
+    CompareMap, DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter,
+    antumbra_lookup, antumbra_lookup_projective, antumbra_tap, antumbra_visible,
 };
 use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor, wgpu};
 use antumbra::lab::gpu::{Gpu, read_depth};
+use antumbra::warp::{Focus, Warp};
 use antumbra::wgsl::{self, Bindings};
 use antumbra::{
-    Aabb, Bias, Encoding, FitInput, Light, MapBudget, Pcf, Remix, Scene, ShadowFrame, ShadowTechnique, ViewUniforms,
-    WgslKey,
+    Aabb, Bias, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame, ShadowTechnique,
+    ViewUniforms, WgslKey,
 };
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -57,7 +60,7 @@ struct Outcome {
     tap: f32,
     row: f32,
     lit: f32,
-    spare: f32,
+    caster_depth: f32,
 }
 
 /// `SplitMix64`: numbers without a dependency.
@@ -89,11 +92,11 @@ impl Random {
 #[test]
 fn twins_agree() {
     let Some(gpu) = support::gpu() else { return };
-    for filter in Pcf::ALL {
+    for key in WgslKey::all() {
         // A power of two, and sizes for which 1/size is not exact.
         for side in [64, 61, 7] {
-            let worst = compare(&gpu, filter, side);
-            eprintln!("{} ({side}², {CASES} cases, {}): {worst:?}", filter.name(), gpu.adapter());
+            let worst = compare(&gpu, key, side);
+            eprintln!("{key:?} ({side}², {CASES} cases, {}): {worst:?}", gpu.adapter());
         }
     }
 }
@@ -107,12 +110,17 @@ struct Worst {
     weight: f32,
     /// Cases in which a comparison was in doubt.
     doubtful: usize,
+    /// Points of a warped map's receivers that lie behind its centre of projection, as both sides say.
+    behind: usize,
+    /// Points so near the plane through that centre that rounding decides where they go.
+    undecided: usize,
 }
 
-fn compare(gpu: &Gpu, filter: Pcf, side: u32) -> Worst {
+fn compare(gpu: &Gpu, key: WgslKey, side: u32) -> Worst {
+    let filter = key.filter;
     // A map of noise, and frames that were fitted to it.
     let mut random = Random(0xA47A_B00C ^ (u64::from(side) << 8) ^ filter as u64);
-    let frames: Vec<ShadowFrame> = (0..8).map(|index| frame(&mut random, filter, side, index)).collect();
+    let frames: Vec<ShadowFrame> = (0..16).map(|index| frame(&mut random, key, side, index)).collect();
     let depth: Vec<f32> = (0..side * side).map(|_| noise(&mut random)).collect();
     let descriptor = ShadowMapsDescriptor { label: Some("twins"), key: frames[0].wgsl, map: MapBudget::one(side) };
     let maps = ShadowMaps::new(gpu.device(), &descriptor).unwrap();
@@ -121,19 +129,20 @@ fn compare(gpu: &Gpu, filter: Pcf, side: u32) -> Worst {
     assert_eq!(read_depth(gpu, &maps).unwrap(), depth, "the adapter stores depths as they are");
     // Run both.
     let cases: Vec<Case> = (0..CASES).map(|_| case(&mut random, &frames, side, &depth)).collect();
-    let outcomes = run(gpu, filter, &maps, &cases);
+    let outcomes = run(gpu, &maps, &cases);
     let map = DepthMap { size: UVec2::splat(side), depth: &depth };
     let mut worst = Worst::default();
     for (case, outcome) in cases.iter().zip(&outcomes) {
-        check_lookup(filter, case, outcome, &mut worst);
+        check_lookup(key, case, outcome, &mut worst);
         check_caster(case, outcome);
         check_filters(filter, &map, case, outcome, &mut worst);
-        check_visible(filter, &map, case, &case.view, outcome.visible, &mut worst);
-        check_visible(filter, &map, case, &frames[0].uniforms.views[0], outcome.visibility, &mut worst);
-        check_visible(filter, &map, case, &frames[0].uniforms.views[0], outcome.lit, &mut worst);
+        check_visible(key, &map, case, &case.view, outcome.visible, &mut worst);
+        check_visible(key, &map, case, &frames[0].uniforms.views[0], outcome.visibility, &mut worst);
+        check_visible(key, &map, case, &frames[0].uniforms.views[0], outcome.lit, &mut worst);
     }
     // Bounds that doubt everything would prove nothing.
-    assert!(worst.doubtful * 8 < 3 * CASES, "{worst:?}");
+    assert!(worst.doubtful * 8 < 3 * CASES && worst.undecided * 8 < CASES, "{worst:?}");
+    assert!(key.shape == MapShape::Affine || worst.behind * 50 > CASES, "{worst:?}");
     worst
 }
 
@@ -142,6 +151,22 @@ struct LookupBound {
     uv: [f64; 2],
     depth: f64,
     slope: [f64; 2],
+}
+
+/// The lookup of a key, and how far the shader's may be from it; `None` where rounding decides about everything.
+fn lookup(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Option<(Lookup, LookupBound)> {
+    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
+    match key.shape {
+        MapShape::Affine => {
+            let twin = antumbra_lookup(view, position, normal, reach, tap_reach);
+            Some((twin, LookupBound::of(key.filter, view, position, normal)))
+        }
+        MapShape::Projective => {
+            let twin = antumbra_lookup_projective(view, position, normal, reach, tap_reach);
+            let [uv_x, uv_y, depth, slope_x, slope_y] = rounded::lookup_projective(view, position, normal, key.filter)?;
+            Some((twin, LookupBound { uv: [uv_x, uv_y], depth, slope: [slope_x, slope_y] }))
+        }
+    }
 }
 
 impl LookupBound {
@@ -203,10 +228,13 @@ impl LookupBound {
     }
 }
 
-fn check_lookup(filter: Pcf, case: &Case, outcome: &Outcome, worst: &mut Worst) {
+fn check_lookup(key: WgslKey, case: &Case, outcome: &Outcome, worst: &mut Worst) {
     let (position, normal) = (case.position.truncate(), case.normal.truncate());
-    let twin = antumbra_lookup(&case.view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
-    let bound = LookupBound::of(filter, &case.view, position, normal);
+    let Some((twin, bound)) = lookup(key, &case.view, position, normal) else {
+        worst.undecided += 1;
+        return;
+    };
+    worst.behind += usize::from(rounded::behind(&case.view, position, normal));
     for (name, shader, twin, bound) in [
         ("uv.x", outcome.uv.x, twin.uv.x, bound.uv[0]),
         ("uv.y", outcome.uv.y, twin.uv.y, bound.uv[1]),
@@ -236,6 +264,11 @@ fn check_caster(case: &Case, outcome: &Outcome) {
         let difference = f64::from(outcome.clip[component] - twin[component]).abs();
         assert!(difference <= 16.0 * ULP * size(component), "clip {component}: {outcome:?} and {twin}");
     }
+    // Linear depth of a vertex.
+    let row = Vec4::from_array(view.depth_from_render);
+    let difference = f64::from(outcome.caster_depth - antumbra_caster_depth(row, position)).abs();
+    let size = f64::from((row * position.extend(1.0)).abs().element_sum());
+    assert!(difference <= 16.0 * ULP * size, "caster depth: {outcome:?}, {difference:e}");
 }
 
 /// Values of a function of a lookup on all sides of what rounding may do to it.
@@ -278,10 +311,16 @@ fn check_filters(filter: Pcf, map: &DepthMap, case: &Case, outcome: &Outcome, wo
     }
 }
 
-fn check_visible(filter: Pcf, map: &DepthMap, case: &Case, view: &ViewUniforms, shader: f32, worst: &mut Worst) {
+fn check_visible(key: WgslKey, map: &DepthMap, case: &Case, view: &ViewUniforms, shader: f32, worst: &mut Worst) {
+    let filter = key.filter;
     let (position, normal) = (case.position.truncate(), case.normal.truncate());
-    let look = antumbra_lookup(view, position, normal, filter.reach() as f32, filter.tap_reach() as f32);
-    let bound = LookupBound::of(filter, view, position, normal);
+    assert!((0.0..=1.0 + WEIGHT_TOLERANCE).contains(&shader), "{shader} is no share: {case:?}");
+    let Some((look, bound)) = lookup(key, view, position, normal) else { return };
+    // A place that is in doubt by texels has more values than those around it.
+    if bound.uv[0].max(bound.uv[1]) > 0.25 / f64::from(map.size.x) {
+        worst.undecided += 1;
+        return;
+    }
     // Beside the lookup's own error, what the filter does to it.
     let uv = core::array::from_fn(|axis| bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0));
     let slope = f64::from(look.slope.abs().element_sum());
@@ -289,7 +328,7 @@ fn check_visible(filter: Pcf, map: &DepthMap, case: &Case, view: &ViewUniforms, 
         bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
     let value = |look: &Lookup| antumbra_filter(filter, map, look);
     // The twin itself is the middle of the band.
-    let twin = antumbra_visible(WgslKey { filter, ..WgslKey::default() }, view, map, position, normal);
+    let twin = antumbra_visible(key, view, map, position, normal);
     assert_eq!(twin.to_bits(), value(&look).to_bits(), "{case:?}");
     within("visible", shader, band(&look, uv, depth, value), 1.0, case, worst);
 }
@@ -307,15 +346,25 @@ fn within(name: &str, shader: f32, (low, high): (f32, f32), scale: f32, case: &C
     }
 }
 
-/// A frame over a box of ten units, automatic or manual.
-fn frame(random: &mut Random, filter: Pcf, side: u32, index: usize) -> ShadowFrame {
+/// A frame over a box of ten units, automatic or manual; warped as a paper does, or by a strength that maps of some
+/// thousand texels take, from hardly any on.
+fn frame(random: &mut Random, key: WgslKey, side: u32, index: usize) -> ShadowFrame {
     let travel = (DVec3::new(0.0, -1.0, 0.0) + random.vector(0.9).as_dvec3()).normalize();
     let bias = match index % 4 {
         3 => Bias::Manual { depth_world: 0.02, normal_texels: 1.5 },
         _ => Bias::Automatic,
     };
+    let warp = match (key.shape, index % 8) {
+        (MapShape::Affine, _) => Warp::Focused,
+        (MapShape::Projective, 0) => Warp::LightSpacePerspective,
+        (MapShape::Projective, 1) => Warp::Trapezoidal { focus: Focus::default() },
+        (MapShape::Projective, 2) => Warp::Perspective { pull_back: 0.0 },
+        (MapShape::Projective, _) => Warp::Fixed { strength: 10.0_f32.powf(random.between(-1.0, 2.5)) },
+    };
+    // The first frame is the map's own.
+    let side = if key.shape == MapShape::Projective && index > 0 { 4096 } else { side };
     let bounds = Aabb::new(DVec3::splat(-5.0), DVec3::splat(5.0));
-    Remix { encoding: Encoding::Depth(filter), bias, ..Remix::default() }
+    Remix { encoding: Encoding::Depth(key.filter), bias, warp, guard: false, ..Remix::default() }
         .fit(&FitInput {
             camera: support::camera(UVec2::new(640, 480)),
             light: Light::Directional { travel },
@@ -345,6 +394,8 @@ fn case(random: &mut Random, frames: &[ShadowFrame], side: u32, depth: &[f32]) -
     let position = match random.below(16) {
         0 => random.vector(5_000.0),
         1 => random.vector(12.0),
+        // Near the plane through a warp's centre of projection (w = 0), on either side.
+        2 | 3 => at_w(&view, random.vector(5.0), random.between(-3.0, 3.0)),
         _ => random.vector(5.0),
     };
     let travel = Vec4::from_array(view.depth_from_render).truncate().normalize_or_zero();
@@ -382,6 +433,17 @@ fn case(random: &mut Random, frames: &[ShadowFrame], side: u32, depth: &[f32]) -
         row: random.vector(3.0).extend(random.between(-3.0, 3.0)),
         weight: random.vector(0.5).extend(0.0) + Vec4::ONE,
     }
+}
+
+/// A position moved to where w is a small number, of either sign; itself where w is the same everywhere.
+fn at_w(view: &ViewUniforms, position: Vec3, near: f32) -> Vec3 {
+    let row = Vec4::from_array(view.w_from_render);
+    let gradient = row.truncate();
+    if gradient == Vec3::ZERO {
+        return position;
+    }
+    let w = near.signum() * 10.0_f32.powf(-2.0 * near.abs());
+    position + gradient * ((w - row.dot(position.extend(1.0))) / gradient.length_squared())
 }
 
 /// Draws depths into a map, texel by texel.
@@ -444,22 +506,38 @@ fn fill(gpu: &Gpu, maps: &ShadowMaps, frame: &ShadowFrame, depth: &[f32]) {
     gpu.queue().submit([encoder.finish()]);
 }
 
-/// Runs the cases on the adapter.
-fn run(gpu: &Gpu, filter: Pcf, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome> {
-    // The text: the library, the cases, and calls that only some keys have.
+/// The text of a key: the library, the cases, and calls that only some keys have.
+fn text(key: WgslKey) -> String {
     let no_tap = "fn tap(look: AntumbraLookup, offset: vec2f) -> f32 { return 0.0; }";
     let tap = "fn tap(look: AntumbraLookup, offset: vec2f) -> f32 {
         return antumbra_tap(antumbra_map, antumbra_compare, look, offset); }";
     let no_row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 { return 0.0; }";
     let row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 {
         return antumbra_box_row(antumbra_map, antumbra_compare, look, x, weight, y); }";
-    let [tap, row] = match filter {
+    let [tap, row] = match key.filter {
         Pcf::Point | Pcf::Hardware2x2 => [no_tap, no_row],
         Pcf::Box3x3 => [tap, no_row],
         Pcf::Box5x5 => [tap, row],
     };
-    let library = wgsl::module(maps.key(), Bindings { group: 1, first: 0 });
-    let text = [library.as_str(), include_str!("twins.wgsl"), tap, row].join("\n");
+    let looks = match key.shape {
+        MapShape::Affine => {
+            "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
+                return antumbra_lookup(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
+            fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_lit(antumbra_place(position, normal)); }"
+        }
+        MapShape::Projective => {
+            "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
+                return antumbra_lookup_projective(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
+            fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_visibility(position, normal, 1.0); }"
+        }
+    };
+    let library = wgsl::module(key, Bindings { group: 1, first: 0 });
+    [library.as_str(), include_str!("twins.wgsl"), looks, tap, row].join("\n")
+}
+
+/// Runs the cases on the adapter.
+fn run(gpu: &Gpu, maps: &ShadowMaps, cases: &[Case]) -> Vec<Outcome> {
+    let text = text(maps.key());
     // The pipeline.
     let device = gpu.device();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -23,9 +23,10 @@ struct Outcome {
     clip: vec4f,
     tap: f32,
     row: f32,
-    // The lookup in two stages.
+    // The lookup in two stages, where there is one.
     lit: f32,
-    spare: f32,
+    // Of a caster's vertex, for warped maps.
+    caster_depth: f32,
 }
 
 @group(0) @binding(0) var<storage, read> cases: array<Case>;
@@ -38,7 +39,7 @@ fn run(@builtin(global_invocation_id) id: vec3u) {
     }
     let case_ = cases[id.x];
     let view = case_.view;
-    let found = antumbra_lookup(view, case_.position.xyz, case_.normal.xyz, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH);
+    let found = lookup(view, case_.position.xyz, case_.normal.xyz);
     let given = AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy);
     var out: Outcome;
     out.uv = found.uv;
@@ -47,7 +48,8 @@ fn run(@builtin(global_invocation_id) id: vec3u) {
     out.filtered = antumbra_filter(antumbra_map, antumbra_compare, given);
     out.visible = antumbra_visible(view, antumbra_map, antumbra_compare, case_.position.xyz, case_.normal.xyz);
     out.visibility = antumbra_visibility(case_.position.xyz, case_.normal.xyz, 1.0);
-    out.lit = antumbra_lit(antumbra_place(case_.position.xyz, case_.normal.xyz));
+    out.lit = lit(case_.position.xyz, case_.normal.xyz);
+    out.caster_depth = antumbra_caster_depth(view.depth_from_render, case_.position.xyz);
     let matrix = mat4x4f(view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render);
     out.clip = antumbra_caster(matrix, case_.position.xyz);
     out.tap = tap(given, case_.slope_offset.zw);

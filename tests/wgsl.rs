@@ -6,7 +6,7 @@ use std::mem::offset_of;
 use antumbra::transpile::naga::{self, Expression, Statement, TypeInner};
 use antumbra::transpile::{Glsl, Shader};
 use antumbra::wgsl::{self, Bindings};
-use antumbra::{Pcf, ShadowUniforms, ViewUniforms, WgslKey, gpu};
+use antumbra::{MapShape, Pcf, ShadowUniforms, ViewUniforms, WgslKey, gpu};
 
 /// Every key with its library: the fragments, without bindings.
 fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
@@ -17,10 +17,11 @@ fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
     })
 }
 
-/// An engine's shader around `antumbra_visibility` and the same in two stages, with names that an engine would choose.
+/// An engine's shader around `antumbra_visibility`, with names that an engine would choose, and what a shape adds to
+/// it.
 fn host(key: WgslKey, bindings: Bindings) -> String {
     let engine = "
-        struct View { clip_from_world: mat4x4f, eye: vec4f }
+        struct View { clip_from_world: mat4x4f, depth_from_world: vec4f, eye: vec4f }
         struct Lookup { uv: vec2f }
         @group(0) @binding(0) var<uniform> view: View;
         @group(0) @binding(1) var map: texture_2d<f32>;
@@ -31,12 +32,20 @@ fn host(key: WgslKey, bindings: Bindings) -> String {
         @vertex fn vertex(@location(0) position: vec3f, @location(1) normal: vec3f) -> Fragment {
             return Fragment(view.clip_from_world * vec4f(position, 1.0), position, normal);
         }
-        @vertex fn caster(@location(0) position: vec3f) -> @builtin(position) vec4f {
-            return antumbra_caster(view.clip_from_world, position);
-        }
         @fragment fn fragment(in: Fragment) -> @location(0) vec4f {
             let visible = antumbra_visibility(in.position, normalize(in.normal), distance(view.eye.xyz, in.position));
             return filter_colour(lookup(Lookup(in.position.xy))) * visible;
+        }";
+    [wgsl::module(key, bindings).as_str(), engine, of_shape(key.shape)].concat()
+}
+
+/// Casters of an affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map
+/// carry their linear depth from the vertices to the fragments, which write it.
+fn of_shape(shape: MapShape) -> &'static str {
+    match shape {
+        MapShape::Affine => "
+        @vertex fn caster(@location(0) position: vec3f) -> @builtin(position) vec4f {
+            return antumbra_caster(view.clip_from_world, position);
         }
         struct Placed { @builtin(position) clip: vec4f, @location(0) place: vec3f, @location(1) @interpolate(flat) slope: vec2f }
         @vertex fn placing(@location(0) position: vec3f, @location(1) normal: vec3f) -> Placed {
@@ -45,8 +54,33 @@ fn host(key: WgslKey, bindings: Bindings) -> String {
         }
         @fragment fn placed(in: Placed) -> @location(0) vec4f {
             return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
-        }";
-    wgsl::module(key, bindings) + engine
+        }",
+        MapShape::Projective => "
+        struct Thrown { @builtin(position) clip: vec4f, @location(0) depth: f32 }
+        @vertex fn caster(@location(0) position: vec3f) -> Thrown {
+            let clip = antumbra_caster(view.clip_from_world, position);
+            return Thrown(clip, antumbra_caster_depth(view.depth_from_world, position));
+        }
+        @fragment fn thrown(in: Thrown) -> @builtin(frag_depth) f32 {
+            return in.depth;
+        }",
+    }
+}
+
+/// The entry points of [`host`], all of them.
+fn entries(shape: MapShape) -> &'static [&'static str] {
+    match shape {
+        MapShape::Affine => &["vertex", "fragment", "caster", "placing", "placed"],
+        MapShape::Projective => &["vertex", "fragment", "caster", "thrown"],
+    }
+}
+
+/// The entry points that look a receiver up.
+fn lookups(shape: MapShape) -> &'static [&'static str] {
+    match shape {
+        MapShape::Affine => &["fragment", "placing", "placed"],
+        MapShape::Projective => &["fragment"],
+    }
 }
 
 /// Where engines put the bindings: at the front, in between, and far back.
@@ -78,9 +112,14 @@ fn every_item_has_the_prefix() {
         }
     }
     // What the generator adds.
-    let shader = Shader::parse(&wgsl::module(WgslKey { filter: Pcf::Point, ..WgslKey::default() }, PLACES[0])).unwrap();
-    for (_, variable) in shader.module.global_variables.iter() {
-        assert!(prefixed(variable.name.as_deref().unwrap_or("")), "{variable:?}");
+    for key in WgslKey::all() {
+        let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
+        let variables: Vec<_> =
+            shader.module.global_variables.iter().map(|(_, variable)| variable.name.clone()).collect();
+        assert_eq!(variables.len(), wgsl::BINDING_COUNT as usize, "{key:?}");
+        for name in variables.into_iter().flatten().chain(functions(key)) {
+            assert!(prefixed(&name), "{key:?}: {name}");
+        }
     }
 }
 
@@ -125,7 +164,8 @@ fn no_derivatives_and_no_pointers() {
 #[test]
 fn one_lookup_is_straight_code() {
     for key in WgslKey::all() {
-        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(&["fragment", "placing", "placed"]).unwrap();
+        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(lookups(key.shape)).unwrap();
+        assert!(shader.module.functions.len() >= 3, "{key:?}: nothing was looked at");
         for (_, ty) in shader.module.types.iter() {
             assert!(!matches!(ty.inner, TypeInner::Array { .. } | TypeInner::BindingArray { .. }), "{key:?}: {ty:?}");
         }
@@ -165,14 +205,51 @@ fn links_into_a_host_shader() {
             // A caster alone needs no map.
             let caster = shader.keep(&["caster"]).unwrap();
             assert_eq!(caster.module.global_variables.len(), 1, "{key:?}");
-            // In two stages, vertices read the uniforms and no map, and fragments the map and no uniforms.
             let globals = |entry: &str| -> Vec<_> {
                 let kept = shader.keep(&[entry]).unwrap();
                 kept.module.global_variables.iter().filter_map(|(_, variable)| variable.name.clone()).collect()
             };
-            assert_eq!(globals("placing"), ["antumbra_uniforms", "view"], "{key:?}");
-            assert_eq!(globals("placed"), ["antumbra_map", "antumbra_compare"], "{key:?}");
+            match key.shape {
+                // In two stages, vertices read the uniforms and no map, and fragments the map and no uniforms.
+                MapShape::Affine => {
+                    assert_eq!(globals("placing"), ["antumbra_uniforms", "view"], "{key:?}");
+                    assert_eq!(globals("placed"), ["antumbra_map", "antumbra_compare"], "{key:?}");
+                }
+                // What casters write comes to their fragments from the vertices.
+                MapShape::Projective => assert_eq!(globals("thrown"), [""; 0], "{key:?}"),
+            }
         }
+    }
+}
+
+/// Functions that a key's whole text defines.
+fn functions(key: WgslKey) -> Vec<String> {
+    let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
+    shader.module.functions.iter().filter_map(|(_, function)| function.name.clone()).collect()
+}
+
+/// The lookup in two stages is for maps in which it is linear in position, and for no others; each key has one lookup.
+#[test]
+fn two_stages_are_for_affine_maps_alone() {
+    for key in WgslKey::all() {
+        let functions = functions(key);
+        let has = |name: &str| functions.iter().any(|function| function == name);
+        let affine = key.shape == MapShape::Affine;
+        assert_eq!([has("antumbra_place"), has("antumbra_lit"), has("antumbra_lookup")], [affine; 3], "{key:?}");
+        assert_eq!(has("antumbra_lookup_projective"), !affine, "{key:?}");
+        for name in ["antumbra_visibility", "antumbra_visible", "antumbra_caster", "antumbra_caster_depth"] {
+            assert!(has(name), "{key:?}: {name}");
+        }
+    }
+}
+
+/// Keys go through the whole product of their choices, each once.
+#[test]
+fn keys_are_all_there() {
+    let keys: Vec<_> = WgslKey::all().collect();
+    assert_eq!(keys.len(), Pcf::ALL.len() * MapShape::ALL.len());
+    for (filter, shape) in Pcf::ALL.iter().flat_map(|filter| MapShape::ALL.map(|shape| (*filter, shape))) {
+        assert_eq!(keys.iter().filter(|key| **key == WgslKey { filter, shape }).count(), 1, "{filter:?} {shape:?}");
     }
 }
 
@@ -208,7 +285,7 @@ fn composes_unchanged_under_naga_oil() {
 fn converts_to_other_languages() {
     for (key, _, library) in libraries() {
         let linked = Shader::parse(&host(key, PLACES[0])).unwrap();
-        let stages = ["fragment", "vertex", "placing", "placed"].map(|entry| linked.keep(&[entry]).unwrap());
+        let stages: Vec<_> = entries(key.shape).iter().map(|entry| linked.keep(&[entry]).unwrap()).collect();
         for shader in std::iter::once(&library).chain(&stages) {
             assert_eq!(shader.spirv().unwrap()[0], 0x0723_0203, "{key:?}");
             assert!(shader.hlsl().unwrap().len() > 100, "{key:?}");
@@ -222,10 +299,17 @@ fn converts_to_other_languages() {
             let textures: Vec<_> = fragment.samplers.iter().map(|(_, texture)| texture.as_str()).collect();
             assert!(textures.contains(&"antumbra_map") && textures.contains(&"map"), "{key:?}: {textures:?}");
             assert!(fragment.blocks.iter().any(|(_, block)| block == "antumbra_uniforms"), "{key:?}");
-            let placing = linked.glsl(version, "placing").unwrap_or_else(|error| panic!("{key:?}: {error}"));
-            assert!(placing.samplers.is_empty(), "{key:?}: {:?}", placing.samplers);
-            let placed = linked.glsl(version, "placed").unwrap_or_else(|error| panic!("{key:?}: {error}"));
-            assert!(placed.blocks.is_empty() && placed.samplers.len() == 1, "{key:?}: {:?}", placed.blocks);
+            let [first, second] = match key.shape {
+                MapShape::Affine => ["placing", "placed"],
+                MapShape::Projective => ["caster", "thrown"],
+            };
+            let first = linked.glsl(version, first).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            assert!(first.samplers.is_empty() && !first.blocks.is_empty(), "{key:?}: {:?}", first.samplers);
+            let second = linked.glsl(version, second).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            let samplers = usize::from(key.shape == MapShape::Affine);
+            assert!(second.blocks.is_empty() && second.samplers.len() == samplers, "{key:?}: {:?}", second.blocks);
+            let writes_depth = second.text.contains("gl_FragDepth");
+            assert_eq!(writes_depth, key.shape == MapShape::Projective, "{key:?}: {}", second.text);
         }
     }
 }
@@ -241,6 +325,9 @@ fn layouts_agree() {
         ("texel", offset_of!(ViewUniforms, texel)),
         ("bias", offset_of!(ViewUniforms, bias)),
         ("rect", offset_of!(ViewUniforms, rect)),
+        ("across_u", offset_of!(ViewUniforms, across_u)),
+        ("across_v", offset_of!(ViewUniforms, across_v)),
+        ("across_w", offset_of!(ViewUniforms, across_w)),
     ];
     for (key, _, shader) in libraries() {
         assert_eq!(members(&shader.module, "AntumbraView"), (view.to_vec(), size_of::<ViewUniforms>()), "{key:?}");
@@ -284,22 +371,28 @@ fn pipelines_accept_the_layouts() {
         let _ =
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         for (text, layout) in [(own, maps.bind_group_layout()), (merged, &layout)] {
-            make_pipeline(&device, &text, layout, maps.caster_layout(), ["vertex", "fragment"]);
-            make_pipeline(&device, &text, layout, maps.caster_layout(), ["placing", "placed"]);
+            let stages: &[_] = match key.shape {
+                MapShape::Affine => &[("vertex", Some("fragment")), ("placing", Some("placed")), ("vertex", None)],
+                MapShape::Projective => &[("vertex", Some("fragment")), ("caster", Some("thrown"))],
+            };
+            for stages in stages {
+                make_pipeline(
+                    &device,
+                    &[&text, host_on_wgpu(key.shape)].concat(),
+                    layout,
+                    maps.caster_layout(),
+                    *stages,
+                );
+            }
         }
     }
     drop(queue);
 }
 
-fn make_pipeline(
-    device: &gpu::wgpu::Device,
-    text: &str,
-    maps: &gpu::wgpu::BindGroupLayout,
-    casters: &gpu::wgpu::BindGroupLayout,
-    [vertex, fragment]: [&str; 2],
-) {
-    use gpu::wgpu;
-    let engine = "
+/// An engine's shader for [`make_pipeline`]: group 1 is `caster_bind_group`.
+fn host_on_wgpu(shape: MapShape) -> &'static str {
+    match shape {
+        MapShape::Affine => "
         @group(1) @binding(0) var<uniform> clip_from_render: mat4x4f;
         @vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
             return antumbra_caster(clip_from_render, position);
@@ -314,8 +407,40 @@ fn make_pipeline(
         }
         @fragment fn placed(in: Placed) -> @location(0) vec4f {
             return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
-        }";
-    let source = wgpu::ShaderSource::Wgsl([text, engine].concat().into());
+        }",
+        MapShape::Projective => "
+        struct View { clip_from_render: mat4x4f, depth_from_render: vec4f }
+        @group(1) @binding(0) var<uniform> view: View;
+        @vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+            return antumbra_caster(view.clip_from_render, position);
+        }
+        @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+            return vec4f(antumbra_visibility(at.xyz, vec3f(0.0, 1.0, 0.0), 1.0));
+        }
+        struct Thrown { @builtin(position) clip: vec4f, @location(0) depth: f32 }
+        @vertex fn caster(@location(0) position: vec3f) -> Thrown {
+            let clip = antumbra_caster(view.clip_from_render, position);
+            return Thrown(clip, antumbra_caster_depth(view.depth_from_render, position));
+        }
+        @fragment fn thrown(in: Thrown) -> @builtin(frag_depth) f32 {
+            return in.depth;
+        }",
+    }
+}
+
+/// A pipeline of a vertex entry point and, but for casters of affine maps, a fragment entry point. Casters write no
+/// colour.
+fn make_pipeline(
+    device: &gpu::wgpu::Device,
+    text: &str,
+    maps: &gpu::wgpu::BindGroupLayout,
+    casters: &gpu::wgpu::BindGroupLayout,
+    (vertex, fragment): (&str, Option<&str>),
+) {
+    use gpu::wgpu;
+    let colour = [Some(wgpu::TextureFormat::Rgba8Unorm.into())];
+    let targets: &[_] = if fragment == Some("thrown") { &[] } else { &colour };
+    let source = wgpu::ShaderSource::Wgsl(text.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
@@ -339,11 +464,11 @@ fn make_pipeline(
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(gpu::depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
+        fragment: fragment.map(|entry| wgpu::FragmentState {
             module: &module,
-            entry_point: Some(fragment),
+            entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
+            targets,
         }),
         multiview_mask: None,
         cache: None,

@@ -1,7 +1,8 @@
-//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `pcf_*.wgsl` and `visibility_one.wgsl`.
+//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `pcf_*.wgsl`, `visibility_one*.wgsl`
+//! and `caster.wgsl`.
 //!
-//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs` holds
-//! them together on an adapter. The software renderer of the lab runs on them.
+//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs`
+//! holds them together on an adapter. The software renderer of the lab runs on them.
 //!
 //! # References
 //! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987 (percentage-closer filtering).
@@ -89,8 +90,14 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
     }
 }
 
-/// Twin of the shader's constant: a texel may outgrow its neighbour by half.
+/// Twin of the shader's constant: a texel may outgrow what lies within reach by half.
 const ANTUMBRA_MOST_GROWTH: f32 = 0.5;
+
+/// Twin of the shader's constant: (1 + √2)/2, rounded up, texels of shift for each texel of reach.
+const ANTUMBRA_MOST_SHIFT: f32 = 1.2072;
+
+/// Twin of the shader's constant: below every fall there is.
+const ANTUMBRA_SMALLEST: f32 = 1e-37;
 
 /// Twin of `antumbra_lookup_projective`.
 #[must_use]
@@ -106,26 +113,28 @@ pub fn antumbra_lookup_projective(
     let [across_u, across_v, across_w] =
         [view.across_u, view.across_v, view.across_w].map(|row| Vec4::from_array(row).xyz());
     let [_, _, depth_squared, grazing] = view.texel;
-    let [lost_reach, manual, growth, _] = view.bias;
-    let at = position.extend(1.0);
+    let [lost_reach, manual, growth, texel] = view.bias;
+    let at = (position + normal * manual).extend(1.0);
     let w = w_row.dot(at);
-    let from_w = 1.0 / w;
-    let (u, v) = (u_row.dot(at) * from_w, v_row.dot(at) * from_w);
+    let inside = w > 0.0;
+    let from_w = if inside { 1.0 / w } else { 0.0 };
+    let uv = Vec2::new(u_row.dot(at), v_row.dot(at)) * from_w;
     let shared_fall = across_w.dot(normal);
-    let fall = w * w * Vec2::new(across_v.dot(normal) - v * shared_fall, u * shared_fall - across_u.dot(normal));
-    let growth = ((reach + lost_reach) * growth * w.abs()).min(ANTUMBRA_MOST_GROWTH);
-    let step = (fall.x.abs() + fall.y.abs()) / (1.0 - growth);
+    let fall = w * w * Vec2::new(across_v.dot(normal) - uv.y * shared_fall, uv.x * shared_fall - across_u.dot(normal));
+    let step = fall.x.abs() + fall.y.abs();
     let cosine = -depth.xyz().dot(normal);
     let inverse = 1.0 / cosine.abs().max(grazing);
-    let along_normal = (reach + lost_reach) * step * (1.0 - cosine.abs() * inverse) + manual;
+    let across = 1.0 - cosine.abs() * inverse;
+    let wide = reach + lost_reach;
+    let up = fall / fall.x.abs().max(fall.y.abs()).max(ANTUMBRA_SMALLEST);
+    let shift = up * (wide * across * (up.x.abs() + up.y.abs()) / up.dot(up).max(1.0));
+    let growth = (wide * (1.0 + across * ANTUMBRA_MOST_SHIFT) * growth * w.abs()).min(ANTUMBRA_MOST_GROWTH);
     let signed = if cosine >= 0.0 { depth_squared } else { -depth_squared };
     let depth_per_fall = signed * inverse;
-    let moved = (position + normal * along_normal).extend(1.0);
-    let moved_w = w_row.dot(moved);
-    let lift = cosine * along_normal + (tap_reach + lost_reach + reach * growth) * step * depth_per_fall;
+    let lift = (tap_reach + lost_reach + reach * growth) / (1.0 - growth) * step * depth_per_fall;
     Lookup {
-        uv: Vec2::new(u_row.dot(moved), v_row.dot(moved)) / moved_w,
-        depth: if w.min(moved_w) > 0.0 { depth.dot(at) - lift } else { -1.0 },
+        uv: uv + shift * texel,
+        depth: if inside { depth.dot(at) - lift } else { -1.0 },
         slope: fall * depth_per_fall,
     }
 }
@@ -219,8 +228,8 @@ mod tests {
     }
 
     proptest! {
-        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and across
-        /// a straight edge it is the box's overlap with the lit half.
+        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and
+        /// across a straight edge it is the box's overlap with the lit half.
         #[test]
         fn filters_average(u in 0.3..0.7_f32, v in 0.3..0.7_f32, index in 0..4_usize) {
             let filter = Pcf::ALL[index];

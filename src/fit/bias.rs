@@ -1,13 +1,33 @@
 //! Bias from the size of a texel, and from nothing else.
 //!
-//! A texel stores the depth of its centre; a filter reads texels up to its *reach* away. Over that distance the plane of
-//! the receiver falls towards the light by `reach · s · (|n_p| + |n_q|)` measured along its normal, where s is the size of
-//! a texel and n the normal in light space. The receiver is lifted by exactly that: along the light as long as that is
-//! short (which moves no shadow edge), along the normal where the surface grazes the light and the distance along the
-//! light would grow as the tangent.
+//! A texel stores the depth of its centre; a filter reads texels up to its *reach* away. Over that distance the plane
+//! of the receiver falls towards the light by `reach · s · (|n_p| + |n_q|)` measured along its normal, where s is the
+//! size of a texel and n the normal in light space. The receiver is lifted by exactly that: along the light as long as
+//! that is short (which moves no shadow edge), along the normal where the surface grazes the light and the distance
+//! along the light would grow as the tangent.
+//!
+//! # Warped maps
+//! A texel's size differs from texel to texel there, and moving along the normal moves through texels of any size. So
+//! receivers of warped maps move *across* the light, by a number of texels, instead of along their normal:
+//!
+//! ```text
+//! (1)  x(Δ) − x = J⁻¹Δ / (1 − g·Δ)       the texel Δ texels away; exact: warps map lines to lines
+//! (2)  h(Δ) = fall·Δ / (1 − g·Δ)         how far above its plane a point is that the receiver moves to; fall = n·J⁻¹
+//! (3)  δ = (1 − c) R fall (|fall_u| + |fall_v|) / fall·fall,   so that fall·δ = (1 − c) R (|fall_u| + |fall_v|)
+//! (4)  lift ≥ (tap + R G) / (1 − G)      steps of the fall along the light, G ≥ |g·Δ|
+//! ```
+//!
+//! J is the derivative of texels by place across the light at the receiver, g how much a texel outgrows its neighbours
+//! there, R the reach, c the share of the lift that is along the light: 1 down to a cosine of [`GRAZING_COSINE`], then
+//! falling to 0 with the cosine. A tap at o texels from δ, which reads texels δ + Δ with |Δ| ≤ R and |Δ − o| ≤ tap, is
+//! lit if h(δ + Δ) + c lift − c fall·o ≥ 0 for all of them. Times 1 − g·(δ + Δ) > 0 that is the sum of a part with
+//! 1 − c, R (|`fall_u`| + |`fall_v`|) + fall·Δ ≥ 0, in which no growth appears, and a part with c, which (4) satisfies. (3)
+//! is at most (1 + √2)/2 of the reach along either axis, whatever the shape of texels, so that it stays within the
+//! map's border. In a map of square, equal texels it is the way along the normal, over the squared sine of incidence.
 //!
 //! # References
-//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|), bounded.
+//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|),
+//!   bounded.
 
 use glam::{DVec2, DVec3, DVec4, Vec4};
 
@@ -40,8 +60,8 @@ const GRAZING_COSINE: f32 = 0.3;
 const RASTER_SNAP: f64 = 2.0 / 256.0;
 
 /// Rounding steps between a position and a compared depth: the product with a matrix row (4), interpolation across the
-/// triangle in both passes (2), storing (1), rounded up to a power of two. Fewer shows as acne far from the origin; more
-/// lets light through at contacts, by that many steps of f32.
+/// triangle in both passes (2), storing (1), rounded up to a power of two. Fewer shows as acne far from the origin;
+/// more lets light through at contacts, by that many steps of f32.
 const DEPTH_ROUNDINGS: f64 = 8.0;
 
 /// Largest manual bias, world units or texels: far beyond use, far below overflow.
@@ -100,7 +120,7 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_reach, offset, growth * automatic, 0.0].map(narrowed);
+        uniforms.bias = [lost_reach, offset, growth * automatic, 1.0 / input.side].map(narrowed);
         // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
         let depth = input.clip_from_render.row(2);
         uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
@@ -108,12 +128,18 @@ impl Bias {
 }
 
 impl BiasInput<'_> {
-    /// For warped maps: the vectors n · (…) of which the shader makes the fall of a plane over a texel step, and how much a
-    /// texel grows from one to the next, as a share of itself, for each unit of W.
+    /// For warped maps: the vectors of which the shader makes the fall of a plane over a texel step, and by how much of
+    /// itself a texel outgrows its neighbours in u and in v together, for each unit of W.
     ///
-    /// With (u, v) = (U, V)/W and J = ∂(u, v)/∂(p, q), the world step of a texel in u is the first column of J⁻¹ over the side:
-    /// `t_u = −W² (∇V × t − v ∇W × t) / (D · side)`, `t_v = W² (∇U × t − u ∇W × t) / (D · side)`, where D = W³ det J is constant, t is
-    /// the travel of light, and the change of W along them is W² ∇W · (…) without its second term.
+    /// With (u, v) = (U, V)/W and J = ∂(u, v)/∂(p, q), the world step of a texel in u is the first column of J⁻¹ over
+    /// the side, that in v the second one:
+    ///
+    /// ```text
+    /// t_u = −W² (∇V × t − v ∇W × t) / (D · side),   t_v = W² (∇U × t − u ∇W × t) / (D · side)
+    /// ```
+    ///
+    /// where D = W³ det J is constant and t is the travel of light. The change of W along them is W² ∇W · (…), to which
+    /// the second term adds nothing.
     fn across(&self) -> ([DVec3; 3], f64) {
         let [u, v, w] = *self.texture_from_render;
         let (light, bend) = (&self.window.light, &self.window.bend);
