@@ -46,7 +46,9 @@ fn antumbra_lookup_projective(view: AntumbraView, position: vec3f, normal: vec3f
     let lift = (tap_reach + view.bias.x + reach * growth) / (1.0 - growth) * step * depth_per_fall;
     var look: AntumbraLookup;
     look.uv = uv + shift * view.bias.w;
-    look.depth = select(-1.0, dot(view.depth_from_render, at) - lift, inside);
-    look.slope = fall * depth_per_fall;
+    // Texels within reach have a w that is greater by no more than growth: they hold no less than this.
+    let law = antumbra_law(select(1.0, w / (1.0 - growth), inside));
+    look.depth = select(-1.0, (dot(view.depth_from_render, at) - lift) * law, inside);
+    look.slope = fall * depth_per_fall * law;
     return look;
 }

@@ -31,13 +31,21 @@ pub enum MapShape {
     /// Affine, w = 1: uniform maps. Casters need no fragment shader.
     #[default]
     Affine,
-    /// Projective: warped maps. Fragments of casters write their linear depth.
+    /// Projective, texels hold linear depth: warped maps. Casters write their depth in a fragment shader.
     Projective,
+    /// Projective, texels hold linear depth over w: warped maps whose casters need no fragment shader.
+    ProjectiveDepth,
 }
 
 impl MapShape {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Affine, Self::Projective];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Affine, Self::Projective, Self::ProjectiveDepth];
+
+    /// Whether casters write [`ShadowView::depth_from_render`] as their depth, instead of leaving z to the rasteriser.
+    #[must_use]
+    pub const fn writes_depth(self) -> bool {
+        matches!(self, Self::Projective)
+    }
 }
 
 /// Percentage-closer filters: compare first, then average.

@@ -96,7 +96,7 @@ pub use frame::{
     ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
 pub use light::Light;
-pub use remix::{Encoding, Remix, Stabilise};
+pub use remix::{DepthLaw, Encoding, Remix, Stabilise};
 pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
 pub use technique::{FitInput, ShadowTechnique};

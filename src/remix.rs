@@ -26,6 +26,18 @@ impl Default for Encoding {
     }
 }
 
+/// What depth the texels of a warped map hold. Uniform maps hold linear depth either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthLaw {
+    /// Linear along the light, in every texel: casters of warped maps write it in a fragment shader. A plane across the light has no slope,
+    /// so that its bias is as small as in a uniform map.
+    #[default]
+    Linear,
+    /// Linear depth over w, as the rasteriser makes it: early depth tests and the hardware's bias work, and casters need no fragment shader. Depth
+    /// falls where w grows, so that the bias grows by as much: contacts leak more the stronger the warp.
+    Projective,
+}
+
 /// Whether texels keep their place in the world while the camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -51,6 +63,8 @@ pub struct Remix {
     pub warp: Warp,
     /// What is stored and how it is read. Default: hardware 2×2, one texture sample.
     pub encoding: Encoding,
+    /// What depth a texel holds. Default: linear.
+    pub depth: DepthLaw,
     /// Default: automatic.
     pub bias: Bias,
     /// Default: off, the sharpest.
@@ -65,6 +79,7 @@ impl Default for Remix {
         Self {
             warp: Warp::default(),
             encoding: Encoding::default(),
+            depth: DepthLaw::default(),
             bias: Bias::default(),
             stabilise: Stabilise::default(),
             guard: true,
@@ -76,7 +91,12 @@ impl ShadowTechnique for Remix {
     fn wgsl_key(&self) -> WgslKey {
         let Encoding::Depth(filter) = self.encoding;
         let warped = self.warp.bends() && self.stabilise == Stabilise::Off;
-        WgslKey { filter, shape: if warped { MapShape::Projective } else { MapShape::Affine } }
+        let shape = match (warped, self.depth) {
+            (false, _) => MapShape::Affine,
+            (true, DepthLaw::Linear) => MapShape::Projective,
+            (true, DepthLaw::Projective) => MapShape::ProjectiveDepth,
+        };
+        WgslKey { filter, shape }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {

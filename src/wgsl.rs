@@ -58,10 +58,14 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     fragments.push(include_str!("../shaders/view.wgsl"));
     fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
     fragments.push(CASTER);
-    fragments.push(match key.shape {
-        MapShape::Affine => include_str!("../shaders/lookup.wgsl"),
-        MapShape::Projective => include_str!("../shaders/lookup_projective.wgsl"),
-    });
+    match key.shape {
+        MapShape::Affine => fragments.push(include_str!("../shaders/lookup.wgsl")),
+        MapShape::Projective => fragments.push(include_str!("../shaders/law_linear.wgsl")),
+        MapShape::ProjectiveDepth => fragments.push(include_str!("../shaders/law_projective.wgsl")),
+    }
+    if key.shape != MapShape::Affine {
+        fragments.push(include_str!("../shaders/lookup_projective.wgsl"));
+    }
     match key.filter {
         Pcf::Point => fragments.push(include_str!("../shaders/pcf_point.wgsl")),
         Pcf::Hardware2x2 => fragments.push(include_str!("../shaders/pcf_hardware.wgsl")),
@@ -76,7 +80,7 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     }
     fragments.push(match key.shape {
         MapShape::Affine => include_str!("../shaders/visibility_one.wgsl"),
-        MapShape::Projective => include_str!("../shaders/visibility_one_projective.wgsl"),
+        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/visibility_one_projective.wgsl"),
     });
     fragments
 }

@@ -8,8 +8,8 @@ use antumbra::lab::raster::{DepthMode, DepthTarget, RasterPass, rasterise};
 use antumbra::lab::scene::{SOLID, SceneModel};
 use antumbra::warp::{Focus, Warp};
 use antumbra::{
-    Aabb, Camera, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame, ShadowTechnique,
-    techniques,
+    Aabb, Camera, DepthLaw, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame,
+    ShadowTechnique, techniques,
 };
 use common::{direction, view_point};
 use glam::{DMat3, DVec2, DVec3, DVec4, UVec2, Vec3};
@@ -119,7 +119,12 @@ fn solved(frame: &ShadowFrame, level: DVec4) -> Vec<f32> {
         let normals = DMat3::from_cols(planes[0].truncate(), planes[1].truncate(), planes[2].truncate()).transpose();
         let at = (normals.inverse() * -DVec3::from_array(planes.map(|plane| plane.w))).extend(1.0);
         let (z, w) = (z_row.dot(at), w_row.dot(at));
-        if at.is_finite() && w > 0.0 && z <= w { depth_row.dot(at).min(1.0) as f32 } else { 1.0 }
+        if at.is_finite() && w > 0.0 && z <= w {
+            let depth = if frame.wgsl.shape.writes_depth() { depth_row.dot(at) } else { z / w };
+            depth.min(1.0) as f32
+        } else {
+            1.0
+        }
     };
     (0..side * side).map(|texel| depth_at(texel % side, texel / side)).collect()
 }
@@ -136,7 +141,7 @@ fn drawn(frame: &ShadowFrame, corners: &Corners) -> Vec<f32> {
     };
     let view = &frame.views[0];
     let mut target = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
-    let depth_from_render = (frame.wgsl.shape == MapShape::Projective).then_some(view.depth_from_render);
+    let depth_from_render = frame.wgsl.shape.writes_depth().then_some(view.depth_from_render);
     let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render, origin: DVec3::ZERO };
     rasterise(&mut target, &model, core::slice::from_ref(&(0..1)), &pass);
     let (side, ring) = (frame.map.side as usize, view.viewport.x as usize);
@@ -240,11 +245,12 @@ fn warped() -> impl Strategy<Value = Warped> {
     let place = (-1.0..3.0_f64, direction(), prop_oneof![3 => Just(-9.0), 1 => 0.0..4.0_f64]);
     let shape = prop::array::uniform3(prop_oneof![Just(0.0), -2.0..0.0_f64]);
     let eye = (direction(), direction(), prop_oneof![Just(0.0), 0.0..2.0_f64], 0.3..2.0_f64, -3.0..-1.0_f64);
-    let map = (warp(), any::<bool>(), prop_oneof![0..4_usize, Just(3)], 6..9_u32);
+    let law = prop_oneof![Just(DepthLaw::Linear), Just(DepthLaw::Projective)];
+    let map = (warp(), any::<bool>(), prop_oneof![0..4_usize, Just(3)], 6..9_u32, law);
     (plane, place, shape, eye, map).prop_filter_map("no plane", |(plane, place, shape, eye, map)| {
         let ((travel, tilt, log_cosine), (log_size, away, log_distance)) = (plane, place);
         let (to, aside, distance, fov, near) = eye;
-        let (warp, guard, filter, log_side) = map;
+        let (warp, guard, filter, log_side, depth) = map;
         let size = 10.0_f64.powf(log_size);
         let half = DVec3::from_array(shape.map(|log| size * 10.0_f64.powf(log)));
         let middle = away * 10.0_f64.powf(log_distance);
@@ -258,7 +264,7 @@ fn warped() -> impl Strategy<Value = Warped> {
         let up = if to.y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
         let near = 10.0_f64.powf(near) * size;
         let camera = Camera::perspective(Camera::look_at(eye, target, up), fov, 1.5, near, 10.0 * size);
-        let remix = Remix { warp, guard, encoding: Encoding::Depth(Pcf::ALL[filter]), ..Remix::default() };
+        let remix = Remix { warp, guard, depth, encoding: Encoding::Depth(Pcf::ALL[filter]), ..Remix::default() };
         Some(Warped { travel, middle, half, camera, remix, side: 1 << log_side, corners, normal })
     })
 }
@@ -273,7 +279,7 @@ proptest! {
         pixels in prop::collection::vec(prop::array::uniform2(0.0..1.0_f64), 100),
     ) {
         let Some(frame) = case.frame() else { return Ok(()) };
-        prop_assert_eq!(frame.wgsl.shape, MapShape::Projective);
+        prop_assert!(frame.wgsl.shape != MapShape::Affine);
         let depth = if exact { solved(&frame, case.level()) } else { drawn(&frame, &case.corners) };
         let map = DepthMap { size: UVec2::splat(frame.map.side), depth: &depth };
         for point in pixels.into_iter().filter_map(|pixel| case.seen(pixel)) {
@@ -289,6 +295,8 @@ proptest! {
     fn what_is_near_a_plane_shades_it_in_warped_maps(
         case in warped(), pixels in prop::collection::vec(prop::array::uniform2(0.0..1.0_f64), 20),
     ) {
+        // Depth over w falls towards the base line, and so the other law's bias is larger: by the depth itself times the growth of w.
+        let case = Warped { remix: Remix { depth: DepthLaw::Linear, ..case.remix }, ..case };
         let Some(frame) = case.frame() else { return Ok(()) };
         let Some(point) = pixels.into_iter().find_map(|pixel| case.seen(pixel)) else { return Ok(()) };
         // Where f32 positions are coarser than texels, shadows are as coarse as positions.

@@ -20,8 +20,8 @@ use antumbra::lab::gpu::{Gpu, read_depth};
 use antumbra::warp::{Focus, Warp};
 use antumbra::wgsl::{self, Bindings};
 use antumbra::{
-    Aabb, Bias, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame, ShadowTechnique,
-    ViewUniforms, WgslKey,
+    Aabb, Bias, DepthLaw, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame,
+    ShadowTechnique, ViewUniforms, WgslKey,
 };
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -161,15 +161,34 @@ fn lookup(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Op
             let twin = antumbra_lookup(view, position, normal, reach, tap_reach);
             Some((twin, LookupBound::of(key.filter, view, position, normal)))
         }
-        MapShape::Projective => {
-            let twin = antumbra_lookup_projective(view, position, normal, reach, tap_reach);
+        shape => {
+            let twin = antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach);
             let [uv_x, uv_y, depth, slope_x, slope_y] = rounded::lookup_projective(view, position, normal, key.filter)?;
-            Some((twin, LookupBound { uv: [uv_x, uv_y], depth, slope: [slope_x, slope_y] }))
+            let mut bound = LookupBound { uv: [uv_x, uv_y], depth, slope: [slope_x, slope_y] };
+            if shape == MapShape::ProjectiveDepth {
+                bound.divide(view, position, normal, &twin);
+            }
+            Some((twin, bound))
         }
     }
 }
 
 impl LookupBound {
+    /// What dividing by w adds: the bounds shrink by the law, which is itself as exact as w and the growth are.
+    fn divide(&mut self, view: &ViewUniforms, position: Vec3, normal: Vec3, twin: &Lookup) {
+        let at = (position + normal * view.bias[1]).extend(1.0);
+        let row = Vec4::from_array(view.w_from_render);
+        let w = f64::from(row.dot(at));
+        let size = f64::from(row.abs().dot(at.abs()));
+        // Growth is at most a half, so that its rounding counts twice; the rest is products.
+        let share = 24.0 * ULP * (size / w.abs() + 2.0);
+        let law = if w > 0.0 { 1.0 / w } else { 1.0 };
+        self.depth = self.depth * law + f64::from(twin.depth.abs()) * share;
+        for (bound, slope) in self.slope.iter_mut().zip(twin.slope.to_array()) {
+            *bound = *bound * law + f64::from(slope.abs()) * share;
+        }
+    }
+
     fn of(filter: Pcf, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Self {
         // A dot product of four terms: seven operations.
         let dot_error = 14.0 * ULP;
@@ -356,15 +375,19 @@ fn frame(random: &mut Random, key: WgslKey, side: u32, index: usize) -> ShadowFr
     };
     let warp = match (key.shape, index % 8) {
         (MapShape::Affine, _) => Warp::Focused,
-        (MapShape::Projective, 0) => Warp::LightSpacePerspective,
-        (MapShape::Projective, 1) => Warp::Trapezoidal { focus: Focus::default() },
-        (MapShape::Projective, 2) => Warp::Perspective { pull_back: 0.0 },
-        (MapShape::Projective, _) => Warp::Fixed { strength: 10.0_f32.powf(random.between(-1.0, 2.5)) },
+        (_, 0) => Warp::LightSpacePerspective,
+        (_, 1) => Warp::Trapezoidal { focus: Focus::default() },
+        (_, 2) => Warp::Perspective { pull_back: 0.0 },
+        (_, _) => Warp::Fixed { strength: 10.0_f32.powf(random.between(-1.0, 2.5)) },
     };
     // The first frame is the map's own.
-    let side = if key.shape == MapShape::Projective && index > 0 { 4096 } else { side };
+    let side = if key.shape != MapShape::Affine && index > 0 { 4096 } else { side };
     let bounds = Aabb::new(DVec3::splat(-5.0), DVec3::splat(5.0));
-    Remix { encoding: Encoding::Depth(key.filter), bias, warp, guard: false, ..Remix::default() }
+    let depth = match key.shape {
+        MapShape::ProjectiveDepth => DepthLaw::Projective,
+        MapShape::Affine | MapShape::Projective => DepthLaw::Linear,
+    };
+    Remix { encoding: Encoding::Depth(key.filter), bias, warp, depth, guard: false, ..Remix::default() }
         .fit(&FitInput {
             camera: support::camera(UVec2::new(640, 480)),
             light: Light::Directional { travel },
@@ -525,7 +548,7 @@ fn text(key: WgslKey) -> String {
                 return antumbra_lookup(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
             fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_lit(antumbra_place(position, normal)); }"
         }
-        MapShape::Projective => {
+        MapShape::Projective | MapShape::ProjectiveDepth => {
             "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
                 return antumbra_lookup_projective(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
             fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_visibility(position, normal, 1.0); }"

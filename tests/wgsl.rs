@@ -55,6 +55,10 @@ fn of_shape(shape: MapShape) -> &'static str {
         @fragment fn placed(in: Placed) -> @location(0) vec4f {
             return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
         }",
+        MapShape::ProjectiveDepth => "
+        @vertex fn caster(@location(0) position: vec3f) -> @builtin(position) vec4f {
+            return antumbra_caster(view.clip_from_world, position);
+        }",
         MapShape::Projective => "
         struct Thrown { @builtin(position) clip: vec4f, @location(0) depth: f32 }
         @vertex fn caster(@location(0) position: vec3f) -> Thrown {
@@ -72,6 +76,7 @@ fn entries(shape: MapShape) -> &'static [&'static str] {
     match shape {
         MapShape::Affine => &["vertex", "fragment", "caster", "placing", "placed"],
         MapShape::Projective => &["vertex", "fragment", "caster", "thrown"],
+        MapShape::ProjectiveDepth => &["vertex", "fragment", "caster"],
     }
 }
 
@@ -79,7 +84,7 @@ fn entries(shape: MapShape) -> &'static [&'static str] {
 fn lookups(shape: MapShape) -> &'static [&'static str] {
     match shape {
         MapShape::Affine => &["fragment", "placing", "placed"],
-        MapShape::Projective => &["fragment"],
+        MapShape::Projective | MapShape::ProjectiveDepth => &["fragment"],
     }
 }
 
@@ -217,6 +222,8 @@ fn links_into_a_host_shader() {
                 }
                 // What casters write comes to their fragments from the vertices.
                 MapShape::Projective => assert_eq!(globals("thrown"), [""; 0], "{key:?}"),
+                // Here casters have no fragments.
+                MapShape::ProjectiveDepth => assert_eq!(globals("caster"), ["view"], "{key:?}"),
             }
         }
     }
@@ -302,6 +309,7 @@ fn converts_to_other_languages() {
             let [first, second] = match key.shape {
                 MapShape::Affine => ["placing", "placed"],
                 MapShape::Projective => ["caster", "thrown"],
+                MapShape::ProjectiveDepth => continue,
             };
             let first = linked.glsl(version, first).unwrap_or_else(|error| panic!("{key:?}: {error}"));
             assert!(first.samplers.is_empty() && !first.blocks.is_empty(), "{key:?}: {:?}", first.samplers);
@@ -374,6 +382,7 @@ fn pipelines_accept_the_layouts() {
             let stages: &[_] = match key.shape {
                 MapShape::Affine => &[("vertex", Some("fragment")), ("placing", Some("placed")), ("vertex", None)],
                 MapShape::Projective => &[("vertex", Some("fragment")), ("caster", Some("thrown"))],
+                MapShape::ProjectiveDepth => &[("vertex", Some("fragment")), ("vertex", None)],
             };
             for stages in stages {
                 make_pipeline(
@@ -407,6 +416,14 @@ fn host_on_wgpu(shape: MapShape) -> &'static str {
         }
         @fragment fn placed(in: Placed) -> @location(0) vec4f {
             return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
+        }",
+        MapShape::ProjectiveDepth => "
+        @group(1) @binding(0) var<uniform> clip_from_render: mat4x4f;
+        @vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+            return antumbra_caster(clip_from_render, position);
+        }
+        @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+            return vec4f(antumbra_visibility(at.xyz, vec3f(0.0, 1.0, 0.0), 1.0));
         }",
         MapShape::Projective => "
         struct View { clip_from_render: mat4x4f, depth_from_render: vec4f }

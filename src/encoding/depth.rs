@@ -99,9 +99,19 @@ const ANTUMBRA_MOST_SHIFT: f32 = 1.2072;
 /// Twin of the shader's constant: below every fall there is.
 const ANTUMBRA_SMALLEST: f32 = 1e-37;
 
+/// Twin of `antumbra_law`: what a depth is multiplied by before it is compared.
+#[must_use]
+pub fn antumbra_law(shape: MapShape, w: f32) -> f32 {
+    match shape {
+        MapShape::Affine | MapShape::Projective => 1.0,
+        MapShape::ProjectiveDepth => 1.0 / w,
+    }
+}
+
 /// Twin of `antumbra_lookup_projective`.
 #[must_use]
 pub fn antumbra_lookup_projective(
+    shape: MapShape,
     view: &ViewUniforms,
     position: Vec3,
     normal: Vec3,
@@ -132,10 +142,11 @@ pub fn antumbra_lookup_projective(
     let signed = if cosine >= 0.0 { depth_squared } else { -depth_squared };
     let depth_per_fall = signed * inverse;
     let lift = (tap_reach + lost_reach + reach * growth) / (1.0 - growth) * step * depth_per_fall;
+    let law = antumbra_law(shape, if inside { w / (1.0 - growth) } else { 1.0 });
     Lookup {
         uv: uv + shift * texel,
-        depth: if inside { depth.dot(at) - lift } else { -1.0 },
-        slope: fall * depth_per_fall,
+        depth: if inside { (depth.dot(at) - lift) * law } else { -1.0 },
+        slope: fall * depth_per_fall * law,
     }
 }
 
@@ -192,7 +203,7 @@ pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap
     let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
     let look = match key.shape {
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
-        MapShape::Projective => antumbra_lookup_projective(view, position, normal, reach, tap_reach),
+        shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
     };
     antumbra_filter(key.filter, map, &look)
 }

@@ -17,7 +17,7 @@ use super::scene::SceneModel;
 use super::subject::Subject;
 use crate::camera::Camera;
 use crate::encoding::depth::{DepthMap, antumbra_visible};
-use crate::frame::{MapShape, ShadowFrame};
+use crate::frame::ShadowFrame;
 
 /// A shadow mask and what it took.
 #[derive(Clone, Debug)]
@@ -66,7 +66,7 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     let casters: Vec<_> =
         objects.filter(|(object, _)| view.cull.may_cast(&object.bounds)).map(|(_, range)| range.clone()).collect();
     // Warped maps keep linear depth; it is what z is in affine ones.
-    let depth_from_render = (frame.wgsl.shape == MapShape::Projective).then_some(view.depth_from_render);
+    let depth_from_render = frame.wgsl.shape.writes_depth().then_some(view.depth_from_render);
     let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render, origin };
     rasterise(&mut drawn, &subject.model, &casters, &pass);
     let map = placed(&drawn, view.viewport, frame.map.side);

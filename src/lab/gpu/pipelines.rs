@@ -38,7 +38,9 @@ pub(super) struct PairDescriptor<'a> {
 pub(super) fn casters(gpu: &Gpu, shape: MapShape, caster_layout: &wgpu::BindGroupLayout) -> Pair {
     let text = |stage| [wgsl::CASTER, include_str!("cutout.wgsl"), stage].concat();
     match shape {
-        MapShape::Affine => caster_pair(gpu, "casters", &text(include_str!("casters.wgsl")), None, caster_layout),
+        MapShape::Affine | MapShape::ProjectiveDepth => {
+            caster_pair(gpu, "casters", &text(include_str!("casters.wgsl")), None, caster_layout)
+        }
         MapShape::Projective => {
             let text = text(include_str!("casters_projective.wgsl"));
             caster_pair(gpu, "casters", &text, Some("write_depth"), caster_layout)
@@ -105,7 +107,7 @@ impl Host {
     pub(super) fn of(key: WgslKey) -> Self {
         match (key.shape, key.filter) {
             (MapShape::Affine, Pcf::Point | Pcf::Hardware2x2) => Self::Placed,
-            (MapShape::Affine, Pcf::Box3x3 | Pcf::Box5x5) | (MapShape::Projective, _) => Self::Whole,
+            _ => Self::Whole,
         }
     }
 
@@ -140,7 +142,7 @@ pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
 pub(super) fn library_receivers(gpu: &Gpu, key: WgslKey, host: Host) -> Pair {
     let placed = match key.shape {
         MapShape::Affine => include_str!("light_placed.wgsl"),
-        MapShape::Projective => "",
+        MapShape::Projective | MapShape::ProjectiveDepth => "",
     };
     let text = [&wgsl::module(key, Bindings { group: 1, first: 0 }), include_str!("light_whole.wgsl"), placed].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
