@@ -58,8 +58,7 @@ pub enum Stabilise {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remix {
-    /// Layout of a map. Default: focused, because its texels are never larger in area than the uniform map's by more
-    /// than rounding.
+    /// Layout of a map. Default: least error, which is the focused map where no warp pays.
     pub warp: Warp,
     /// What is stored and how it is read. Default: hardware 2×2, one texture sample.
     pub encoding: Encoding,

@@ -24,7 +24,6 @@ pub enum Warp {
     /// Uniform over the whole scene as the light sees it. View-independent: the map of a still scene can be kept.
     Uniform,
     /// Uniform over what is in view.
-    #[default]
     Focused,
     /// Warped along the view by a strength given by hand: κλ, the ratio of texel densities from the near to the far side of what is in
     /// view, less one. 0 is focused; 0 to 1000. For experiments: the strength that pays differs from view to view.
@@ -47,7 +46,8 @@ pub enum Warp {
     },
     /// The strength with the least *worst* footprint over what is in view.
     Minimax,
-    /// The strength with the least predicted picture error.
+    /// The strength, and the direction, with the least predicted picture error.
+    #[default]
     LeastError,
 }
 

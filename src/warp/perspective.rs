@@ -14,7 +14,7 @@
 //!
 //! # Where this differs from print
 //! - TH-8, TH-9: M and L' multiply in the order of column vectors, and a vertex goes through L', not its inverse.
-//! - Depth is linear along the light, so that casters behind the eye need no pull-back to keep their order. [`PullBack`] is the
+//! - Depth is linear along the light, so that casters behind the eye need no pull-back to keep their order. `pull_back` is the
 //!   paper's means to weaken the warp.
 //!
 //! # References
