@@ -34,7 +34,7 @@ use crate::math::homography::WarpFrame;
 
 /// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen strength by a
 /// hundredth and cost microseconds; half as many make it jump where a ray leaves the body.
-const RAYS: [u32; 2] = [7, 5];
+const RAYS: [u32; 2] = [6, 4];
 
 /// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
 /// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.

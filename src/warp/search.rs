@@ -6,16 +6,25 @@
 /// The golden ratio less one.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// Strengths are searched as κλ/(1 + κλ), from 0 (none) to 1 (endless): even steps of that are even steps of what they do to a map.
+fn share_of(strength: f64) -> f64 {
+    strength / (1.0 + strength)
+}
+
+fn strength_of(share: f64) -> f64 {
+    share / (1.0 - share)
+}
+
 /// Steps: each leaves 62 % of the interval. 26 leave 4e-6 of it, which moves no map of 16384 texels by one. Fewer show as steps of the
 /// map when the camera moves; more are lost in the rounding of errors that are flat at the bottom.
 const STEPS: u32 = 26;
 
 /// κλ in [0, `limit`] of the least error; 0 where no strength is better than none.
 ///
-/// Exact to 3e-5 of 1 + κλ for errors that fall to one valley and rise behind it. 30 evaluations.
+/// Exact to 4e-6 (1 + κλ)² for errors that fall to one valley and rise behind it. 30 evaluations.
 pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
-    let at = |log: f64| error(log.exp_m1());
-    let (mut low, mut high) = (0.0, limit.ln_1p());
+    let at = |share: f64| error(strength_of(share));
+    let (mut low, mut high) = (0.0, share_of(limit));
     let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
     let (mut error_left, mut error_right) = (at(left), at(right));
     for _ in 0..STEPS {
@@ -30,7 +39,7 @@ pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
         }
     }
     let best = low.midpoint(high);
-    if at(best) < error(0.0) { best.exp_m1() } else { 0.0 }
+    if at(best) < error(0.0) { strength_of(best) } else { 0.0 }
 }
 
 /// Steps in [`not_worse`]: false position with Illinois' remedy gains more than a digit each.
@@ -46,8 +55,8 @@ pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
         return strength;
     }
     // The mean slope from 0: unlike the difference itself, it is not zero at 0 again.
-    let slope = |log: f64| (error(log.exp_m1()) - uniform) / log;
-    let mut high = (strength.ln_1p(), last / strength.ln_1p());
+    let slope = |share: f64| (error(strength_of(share)) - uniform) / share;
+    let mut high = (share_of(strength), last / share_of(strength));
     // A valley begins at 0, if there is one.
     let near = high.0 * FIRST_STEP;
     let mut low = (near, slope(near));
@@ -57,6 +66,9 @@ pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..FALSE_POSITIONS {
         let middle = (low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1)).clamp(low.0, high.0);
         let at = slope(middle);
+        if at.abs() < CLOSE * uniform {
+            return strength_of(middle);
+        }
         if at > 0.0 {
             high = (middle, at);
             low.1 *= 0.5;
@@ -65,10 +77,13 @@ pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
             high.1 *= 0.5;
         }
     }
-    low.0.exp_m1()
+    strength_of(low.0)
 }
 
-/// Where a valley is looked for, as a share of ln(1 + κλ): a valley that is over before is treated as none. Larger misses shallow
+/// When the mean slope is as good as zero, as a share of the error of no warp.
+const CLOSE: f64 = 1e-9;
+
+/// Where a valley is looked for, as a share of κλ/(1 + κλ): a valley that is over before is treated as none. Larger misses shallow
 /// valleys, smaller sees nothing but rounding.
 const FIRST_STEP: f64 = 1.0 / 1024.0;
 
