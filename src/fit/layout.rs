@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fit::depth_range::rounding_margin;
+use crate::fit::depth_range::{rounding, rounding_margin};
 use crate::fit::snap;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
@@ -12,7 +12,7 @@ use crate::math::homography::{STRONGEST, WarpFrame};
 use crate::report::{Part, Why};
 use crate::scene::Aabb;
 use crate::warp::bend::Bend;
-use crate::warp::least_error::Predictor;
+use crate::warp::least_error::{Predictor, uniform_error};
 use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
 use crate::warp::{Warp, lispsm, minimax, perspective, trapezoid};
@@ -29,6 +29,10 @@ const MOST_HORIZON: f64 = 0.5;
 /// By how much W may change over what positions are uncertain by. At 1 a vertex on the top line could have W = 0; near 0 warps would be
 /// given up where f32 still serves them.
 const MOST_ROUNDING: f64 = 0.125;
+
+/// The same for casters, whose texel hardly matters, but which must not come to lie behind the centre of projection: at 1 they could; near
+/// 0 warps would be given up because something stands far away.
+const MOST_ROUNDING_OF_CASTERS: f64 = 0.5;
 
 /// A body, and the window that is laid around it.
 pub(crate) struct Layout {
@@ -106,7 +110,8 @@ impl Fitter<'_> {
         let margin = rounding_margin(&body.vertices, origin);
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
-        let limit = |around: &WarpFrame| self.strongest(around.extent, margin);
+        let margin_of_casters = self.margin_of_casters(&body);
+        let limit = |around: &WarpFrame| self.strongest(around.extent, margin, margin_of_casters);
         let choice = match warp {
             Warp::Uniform | Warp::Focused | Warp::LeastError => Choice { frame: sight.frame(), strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
@@ -123,7 +128,8 @@ impl Fitter<'_> {
         if asked > limit {
             frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked, limit });
         }
-        let strength = if guard && warp.is_published() { predictor.guarded(allowed) } else { allowed };
+        let uniform = uniform_error(&sight);
+        let strength = if guard && warp.is_published() { predictor.guarded(allowed, uniform) } else { allowed };
         if strength < allowed {
             frame.leave_out(Part::Warp(0), Why::WarpDoesNotPay { asked: allowed, limit: strength });
         }
@@ -134,15 +140,26 @@ impl Fitter<'_> {
         } else {
             Window::least_area(sight.light, bend, &body.vertices, margin)
         };
-        let error = predictor.error(strength);
+        let error = if strength > 0.0 { predictor.error(strength) } else { uniform };
         Layout { body, window, strength, error }
     }
 
-    /// The largest κλ that a map of these texels takes over `extent` world units, positions being uncertain by `margin`.
-    fn strongest(&self, extent: f64, margin: f64) -> f64 {
+    /// The largest κλ that a map of these texels takes over `extent` world units, positions of receivers and casters being uncertain by
+    /// these margins. None for bodies that are no longer than their positions are uncertain.
+    fn strongest(&self, extent: f64, margin: f64, margin_of_casters: f64) -> f64 {
         let by_border = MOST_HORIZON * self.texels.over_window() / self.texels.border();
-        let by_rounding = MOST_ROUNDING * extent / margin;
-        STRONGEST.min(by_border).min(by_rounding)
+        let by_receivers = MOST_ROUNDING * (extent / margin - 1.0).max(0.0);
+        let by_casters = MOST_ROUNDING_OF_CASTERS * extent / margin_of_casters;
+        STRONGEST.min(by_border).min(by_receivers).min(by_casters)
+    }
+
+    /// What f32 may lose of the positions of casters, which stand before the body as far as their bounds reach towards the light.
+    fn margin_of_casters(&self, body: &FocusBody) -> f64 {
+        let casters = &self.input.scene.casters;
+        let first = self.travel.dot(casters.centre() - self.input.origin) - self.travel.abs().dot(casters.half_size());
+        let last = body.vertices.iter().map(|vertex| self.travel.dot(*vertex)).fold(f64::NEG_INFINITY, f64::max);
+        let reach = body.vertices.iter().fold(0.0, |reach: f64, vertex| reach.max(vertex.abs().max_element()));
+        rounding(reach + (last - first).max(0.0), self.input.origin)
     }
 
     /// The window around a body in the fixed frame of the light.

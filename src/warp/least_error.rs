@@ -112,10 +112,17 @@ impl<'a> Predictor<'a> {
         least(limit, |strength| self.error(strength))
     }
 
-    /// A strength, limited to what is predicted to be no worse than uniform.
-    pub(crate) fn guarded(&self, strength: f64) -> f64 {
-        not_worse(strength, |strength| self.error(strength))
+    /// A strength, limited to what is predicted to be no worse than `uniform`, the error without a warp.
+    pub(crate) fn guarded(&self, strength: f64, uniform: f64) -> f64 {
+        not_worse(strength, uniform, |strength| self.error(strength))
     }
+}
+
+/// E without a warp: it does not depend on the axis that a method would have bent along, so that all methods are measured by one.
+pub(crate) fn uniform_error(sight: &Sight) -> f64 {
+    let frame = sight.frame();
+    let [a0, a1] = frame.sides(0.0, &sight.points);
+    a1 - a0 + frame.extent
 }
 
 /// Rays over the part of the picture that the body covers: positions at eye depth ζ are start + direction · ζ.

@@ -36,11 +36,10 @@ pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
 /// Halvings in [`not_worse`]: 1/4096 of the interval.
 const HALVINGS: u32 = 12;
 
-/// The strength itself where `error` is at most that of none; else the largest below it where that holds.
+/// The strength itself where `error` is at most `uniform`; else the largest below it where that holds, or 0.
 ///
-/// Continuous wherever `error` is and has one valley: the largest such strength goes to 0 as the valley does.
-pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
-    let uniform = error(0.0);
+/// Continuous where `uniform` is `error(0.0)` and that has one valley: the largest such strength goes to 0 as the valley does.
+pub(crate) fn not_worse(strength: f64, uniform: f64, error: impl Fn(f64) -> f64) -> f64 {
     if !(error(strength) > uniform) {
         return strength;
     }
@@ -71,9 +70,11 @@ mod tests {
     fn guarded_strengths_are_not_worse() {
         // A valley at 2, back at the level of none at 1 + s = 9.
         let error = |s: f64| (s.ln_1p() - f64::ln(3.0)).powi(2);
-        assert_eq!(not_worse(5.0, error), 5.0);
-        let limited = not_worse(100.0, error);
+        assert_eq!(not_worse(5.0, error(0.0), error), 5.0);
+        let limited = not_worse(100.0, error(0.0), error);
         assert!((limited - 8.0).abs() < 0.02 && error(limited) <= error(0.0), "{limited}");
-        assert_eq!(not_worse(100.0, |s| s), 0.0);
+        assert_eq!(not_worse(100.0, 0.0, |s| s), 0.0);
+        // Worse than none everywhere, and before it is bent at all.
+        assert_eq!(not_worse(5.0, 0.0, |s| 1.0 + error(s)), 0.0);
     }
 }
