@@ -112,7 +112,7 @@ impl BiasInput<'_> {
     /// texel grows from one to the next, as a share of itself, for each unit of W.
     ///
     /// With (u, v) = (U, V)/W and J = ∂(u, v)/∂(p, q), the world step of a texel in u is the first column of J⁻¹ over the side:
-    /// t_u = −W² (∇V × t − v ∇W × t) / (D · side), t_v = W² (∇U × t − u ∇W × t) / (D · side), where D = W³ det J is constant, t is
+    /// `t_u` = −W² (∇V × t − v ∇W × t) / (D · side), `t_v` = W² (∇U × t − u ∇W × t) / (D · side), where D = W³ det J is constant, t is
     /// the travel of light, and the change of W along them is W² ∇W · (…) without its second term.
     fn across(&self) -> ([DVec3; 3], f64) {
         let [u, v, w] = *self.texture_from_render;

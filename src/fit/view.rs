@@ -1,6 +1,6 @@
 //! From a body to a view: window, texels, casters, depth, matrix, bias.
 
-use glam::{DVec3, DVec4, UVec4};
+use glam::{DVec2, DVec3, DVec4, UVec4};
 
 use crate::aliasing::footprint;
 use crate::fit::bias::{Bias, BiasInput};
@@ -79,7 +79,7 @@ impl Fitter<'_> {
         let rows = self.texture_rows(&clip_from_render);
         let mut uniforms = self.uniforms(&rows, &clip_from_render);
         self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
-        let sides = |vertex: &DVec3| drawn.texel_at(light.ray(*vertex).truncate(), texel).map(|side| side.length());
+        let sides = |vertex: &DVec3| drawn.texel_at(light.ray(*vertex).truncate(), texel).map(DVec2::length);
         let longest = |vertex: &DVec3| sides(vertex).into_iter().fold(0.0, f64::max);
         let (mut pixels, domain) = footprint(&input.camera, &body.vertices, input.origin, longest);
         pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
@@ -172,7 +172,7 @@ mod tests {
     use crate::warp::Warp;
     use crate::warp::bend::Bend;
     use crate::warp::sight::Sight;
-    use glam::{DMat4, DVec2};
+    use glam::DMat4;
 
     const SIDE: u32 = 2048;
     const TRAVEL: DVec3 = DVec3::new(0.36, -0.8, 0.48);

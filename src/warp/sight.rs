@@ -1,7 +1,7 @@
 //! What a warp is chosen from: the body as light and eye see it.
 //!
 //! # References
-//! - Scherzer, *Robust shadow maps for large environments*, 2005, eq. (3): V_P, the view direction across the light.
+//! - Scherzer, *Robust shadow maps for large environments*, 2005, eq. (3): `V_P`, the view direction across the light.
 
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
