@@ -11,7 +11,7 @@ use crate::light_space::LightSpace;
 use crate::math::homography::{STRONGEST, WarpFrame};
 use crate::report::{Part, Why};
 use crate::scene::Aabb;
-use crate::warp::bend::Bend;
+use crate::warp::bend::{Bend, ROUNDINGS};
 use crate::warp::least_error::{Predictor, uniform_error};
 use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
@@ -111,7 +111,7 @@ impl Fitter<'_> {
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
         let margin_of_casters = self.margin_of_casters(&body);
-        let limit = |around: &WarpFrame| self.strongest(around.extent, margin, margin_of_casters);
+        let limit = |around: &WarpFrame| self.strongest(around, &sight, margin, margin_of_casters);
         let choice = match warp {
             Warp::Uniform | Warp::Focused | Warp::LeastError => Choice { frame: sight.frame(), strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
@@ -144,13 +144,17 @@ impl Fitter<'_> {
         Layout { body, window, strength, error }
     }
 
-    /// The largest κλ that a map of these texels takes over `extent` world units, positions of receivers and casters being uncertain by
-    /// these margins. None for bodies that are no longer than their positions are uncertain.
-    fn strongest(&self, extent: f64, margin: f64, margin_of_casters: f64) -> f64 {
+    /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain by these margins.
+    /// None for bodies that are no longer than their positions are uncertain.
+    fn strongest(&self, around: &WarpFrame, sight: &Sight, margin: f64, margin_of_casters: f64) -> f64 {
+        let extent = around.extent;
         let by_border = MOST_HORIZON * self.texels.over_window() / self.texels.border();
         let by_receivers = MOST_ROUNDING * (extent / margin - 1.0).max(0.0);
         let by_casters = MOST_ROUNDING_OF_CASTERS * extent / margin_of_casters;
-        STRONGEST.min(by_border).min(by_receivers).min(by_casters)
+        // f64 bends a point by the distance from the anchor times what W loses, which grows with that distance as well.
+        let reach = sight.points.iter().fold(around.top.length(), |reach, point| reach.max(point.length()));
+        let by_distance = MOST_ROUNDING / (ROUNDINGS * f64::EPSILON) * (extent / (2.0 * reach)).powi(2);
+        STRONGEST.min(by_border).min(by_receivers).min(by_casters).min(by_distance)
     }
 
     /// What f32 may lose of the positions of casters, which stand before the body as far as their bounds reach towards the light.

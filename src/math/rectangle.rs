@@ -28,7 +28,9 @@ pub(crate) fn least_area_axis<const CAP: usize>(points: impl Iterator<Item = DVe
             best = Some(edge);
         }
     }
-    best?.try_normalize()
+    // Edges may be so short that their squares underflow.
+    let edge = best?;
+    (edge / edge.abs().max_element()).try_normalize()
 }
 
 /// Extent of `points` along `axis` and across it.

@@ -22,7 +22,7 @@ pub(crate) struct Bend {
 
 /// Roundings of f64 in a bent coordinate: products with g and o (2), their sums (2), and as many in the rows of a matrix. Fewer can leave
 /// the body's vertices outside; more costs texels only where the bent body is as small as rounding.
-const ROUNDINGS: f64 = 8.0;
+pub(crate) const ROUNDINGS: f64 = 8.0;
 
 impl Bend {
     /// No warp.
