@@ -4,7 +4,8 @@ use antumbra::warp::homography::{
     Homography, LINE_80_PERCENT, LINE_HALF, LINE_TWO_THIRDS, WarpFrame, kappa_for_line, n_opt, n_opt_directional,
     n_opt_eye_range, n_opt_simple,
 };
-use glam::DVec2;
+use antumbra::warp::perspective::post_perspective_light;
+use glam::{DVec2, DVec3};
 
 /// Prints a value beside its reference and holds it to `tolerance`, relative.
 fn close(what: &str, value: f64, reference: f64, tolerance: f64) {
@@ -182,6 +183,24 @@ fn tilted_light() {
             None => assert_eq!(kappa, 0.0, "uniform is best at {degrees} degrees"),
         }
     }
+}
+
+/// Perspective shadow maps: where directional light goes in post-perspective space (60°, square, 1 to 50), in front of the viewer and
+/// behind; it lies on the plane z = f/(f − n).
+#[test]
+fn light_in_post_perspective_space() {
+    let tangent = 30_f64.to_radians().tan();
+    for (towards_z, sign) in [(-0.5, 1.0), (0.5, -1.0)] {
+        let towards = DVec3::new(0.3, 0.8, towards_z);
+        let light = post_perspective_light([-tangent, tangent, -tangent, tangent], 1.0, 50.0, towards);
+        assert_eq!(light.w, 0.5 * sign);
+        let at = light.truncate() / light.w;
+        close("x of the light", at.x, 1.039_230_484_541_326_4 * sign, ROUNDING);
+        close("y of the light", at.y, 2.771_281_292_110_203_7 * sign, ROUNDING);
+        close("z of the light", at.z, 1.020_408_163_265_306_1, ROUNDING);
+    }
+    let across = post_perspective_light([-tangent, tangent, -tangent, tangent], 1.0, 50.0, DVec3::new(0.6, 0.8, 0.0));
+    assert_eq!((across.z, across.w), (0.0, 0.0), "parallel light stays parallel");
 }
 
 // Error of a map over depth, Chong's and Lloyd's metric in one dimension.

@@ -6,7 +6,7 @@ mod common;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use antumbra::{Aabb, FitError, Light, Remix, ShadowFrame, ShadowTechnique, Stabilise, techniques};
-use common::{Inputs, direction, in_view, inputs, view_point};
+use common::{Inputs, direction, in_view, inputs, point_in, shares, towards_light, view_point};
 use glam::{DVec3, DVec4};
 use proptest::prelude::*;
 
@@ -19,36 +19,9 @@ fn remixes() -> impl Strategy<Value = Remix> {
     })
 }
 
-/// A point of a box, by three shares that are often 0 or 1.
-fn point_in(bounds: &Aabb, shares: [f64; 3]) -> DVec3 {
-    bounds.min + (bounds.max - bounds.min) * DVec3::from_array(shares)
-}
-
-fn shares() -> impl Strategy<Value = [f64; 3]> {
-    prop::array::uniform3(prop_oneof![2 => 0.0..=1.0_f64, 1 => Just(0.0), 1 => Just(1.0)])
-}
-
 /// Clip coordinates through the narrowed matrix, of the position that a vertex buffer holds (f32, relative to origin).
 fn clip(frame: &ShadowFrame, inputs: &Inputs, position: DVec3) -> glam::Vec4 {
     frame.views[0].clip_from_render * (position - inputs.origin).as_vec3().extend(1.0)
-}
-
-/// Share of a ray towards the light that is inside a box, if any: distances (first, last) from the point.
-fn towards_light(bounds: &Aabb, point: DVec3, travel: DVec3) -> Option<(f64, f64)> {
-    let (mut first, mut last) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        if travel[axis] == 0.0 {
-            if point[axis] < bounds.min[axis] || point[axis] > bounds.max[axis] {
-                return None;
-            }
-            continue;
-        }
-        let a = (bounds.min[axis] - point[axis]) / -travel[axis];
-        let b = (bounds.max[axis] - point[axis]) / -travel[axis];
-        first = first.max(a.min(b));
-        last = last.min(a.max(b));
-    }
-    (first <= last).then_some((first, last))
 }
 
 fn all_finite(frame: &ShadowFrame) -> bool {
@@ -91,6 +64,10 @@ proptest! {
         prop_assert_eq!(bytemuck::bytes_of(&frame.uniforms), bytemuck::bytes_of(&again.uniforms));
         prop_assert_eq!(&frame, &again);
         prop_assert!(!frame.views.is_empty() || !frame.left_out.is_empty());
+        if inputs.receivers.is_empty() || inputs.casters.is_empty() {
+            prop_assert!(frame.views.is_empty());
+            return Ok(());
+        }
         // A receiver in view that a caster can shadow, and that caster.
         // (in every fourth case: anywhere in the receivers' bounds).
         let receiver = if along < 0.25 {
@@ -99,7 +76,9 @@ proptest! {
             view_point(&inputs.camera, receiver).clamp(inputs.receivers.min, inputs.receivers.max)
         };
         let seen = remix.warp == antumbra::Warp::Uniform || in_view(&inputs, receiver);
-        let Some((first, last)) = towards_light(&inputs.casters, receiver, inputs.travel) else { return Ok(()) };
+        let boxes = inputs.caster_boxes();
+        let shadowing = |bounds: &Aabb| Some((*bounds, towards_light(bounds, receiver, inputs.travel)?));
+        let Some((casters, (first, last))) = boxes.iter().find_map(shadowing) else { return Ok(()) };
         if !seen {
             return Ok(());
         }
@@ -110,7 +89,7 @@ proptest! {
         prop_assert!(at.truncate().truncate().abs().max_element() <= 1.0, "receiver at {at}");
         prop_assert!((0.0..=1.0).contains(&at.z), "receiver at {at}");
         let caster = receiver - inputs.travel * (first + along * (last - first));
-        let caster = caster.clamp(inputs.casters.min, inputs.casters.max);
+        let caster = caster.clamp(casters.min, casters.max);
         prop_assert!(frame.views[0].cull.may_cast(&Aabb::new(caster, caster)), "culled {caster}");
         let at = clip(&frame, &inputs, caster);
         prop_assert!(at.z >= 0.0, "the near plane cuts {caster} at {at}");
@@ -192,7 +171,9 @@ fn light_directions_are_normalised_or_refused() {
         travel: DVec3::NEG_Y,
         casters: Aabb::new(DVec3::splat(-10.0), DVec3::splat(10.0)),
         receivers: Aabb::new(DVec3::splat(-10.0), DVec3::splat(10.0)),
+        objects: Vec::new(),
         visible: None,
+        points: Vec::new(),
         side: 1024,
         origin: DVec3::ZERO,
     };

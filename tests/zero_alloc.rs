@@ -32,13 +32,16 @@ fn fit_allocates_nothing() {
     ];
     let travels = [DVec3::NEG_Y, DVec3::Z, DVec3::new(0.6, -0.8, 0.0), DVec3::ZERO];
     let camera = Camera::perspective(DMat4::IDENTITY, 1.0, 1.5, 0.1, f64::INFINITY);
+    let seen: Vec<DVec3> = (1..400).map(|i| DVec3::new(0.1, 0.05, -0.2) * f64::from(i)).collect();
     let region = Region::new(ALLOCATOR);
     let mut fits = 0;
     for (_, technique) in techniques::NAMED {
-        for stabilise in [Stabilise::Off, Stabilise::SnapTexels] {
-            for scene in scenes {
+        // Still maps have no warp to guard.
+        for (stabilise, guard) in [(Stabilise::Off, true), (Stabilise::Off, false), (Stabilise::SnapTexels, true)] {
+            for (scene, visible_points) in scenes.into_iter().flat_map(|scene| [(scene, &[][..]), (scene, &seen)]) {
                 for travel in travels {
-                    let remix = Remix { stabilise, ..technique() };
+                    let remix = Remix { stabilise, guard, ..technique() };
+                    let scene = Scene { visible_points, ..scene };
                     let light = Light::Directional { travel };
                     let map = MapBudget::one(1024);
                     let input = FitInput { camera, light, scene, map, origin: DVec3::ZERO, previous: None };

@@ -27,7 +27,7 @@ impl DepthAlongLight {
         let first = |bounds: &Aabb| {
             let here = Aabb::new(bounds.min - cull.origin, bounds.max - cull.origin);
             let nearest = depth(here.centre()) - light.travel().abs().dot(here.half_size());
-            nearest.max(entry(light, &here, &corners))
+            corners.map_or(nearest, |corners| nearest.max(entry(light, &here, &corners)))
         };
         let mut near = f64::INFINITY;
         if scene.objects.is_empty() {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fit::depth_range::rounding_margin;
+use crate::fit::depth_range::{rounding, rounding_margin};
 use crate::fit::snap;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
@@ -11,8 +11,8 @@ use crate::light_space::LightSpace;
 use crate::math::homography::{STRONGEST, WarpFrame};
 use crate::report::{Part, Why};
 use crate::scene::Aabb;
-use crate::warp::bend::Bend;
-use crate::warp::least_error::{Predictor, Seen};
+use crate::warp::bend::{Bend, ROUNDINGS};
+use crate::warp::least_error::{Predictor, Seen, uniform_error};
 use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
 use crate::warp::{Warp, lispsm, minimax, perspective, trapezoid};
@@ -29,6 +29,10 @@ const MOST_HORIZON: f64 = 0.5;
 /// By how much W may change over what positions are uncertain by. At 1 a vertex on the top line could have W = 0; near 0 warps would be
 /// given up where f32 still serves them.
 const MOST_ROUNDING: f64 = 0.125;
+
+/// The same for casters, whose texel hardly matters, but which must not come to lie behind the centre of projection: at 1 they could; near
+/// 0 warps would be given up because something stands far away.
+const MOST_ROUNDING_OF_CASTERS: f64 = 0.5;
 
 /// A body, and the window that is laid around it.
 pub(crate) struct Layout {
@@ -106,11 +110,12 @@ impl Fitter<'_> {
         let margin = rounding_margin(&body.vertices, origin);
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
-        let limit = |around: &WarpFrame| self.strongest(around.extent, margin);
+        let margin_of_casters = self.margin_of_casters(&body);
+        let limit = |around: &WarpFrame| self.strongest(around, &sight, margin, margin_of_casters);
         let seen = Seen::of(camera, &body, &sight, self.input.scene.visible_points, origin);
         let choice = match warp {
             Warp::Uniform | Warp::Focused => Choice { frame: sight.frame(), strength: 0.0 },
-            Warp::Fixed { strength } => Choice { frame: sight.frame(), strength: f64::from(strength) },
+            Warp::Fixed { strength } => Choice { frame: sight.frame_along(sight.view), strength: f64::from(strength) },
             Warp::Trapezoidal { focus } => trapezoid::choose(camera, &sight, focus),
             Warp::LightSpacePerspective => lispsm::choose(&sight),
             Warp::Perspective { pull_back } => perspective::choose(camera, &sight, f64::from(pull_back)),
@@ -139,15 +144,31 @@ impl Fitter<'_> {
         } else {
             Window::steady(sight.light, bend, &body.vertices, margin)
         };
-        let error = predictor.error(strength);
+        // Against the uniform map of the same axis: windows are laid where they are smallest, whatever the axis.
+        let error = uniform_error(&sight) * (predictor.error(strength) / predictor.error(0.0));
         Layout { body, window, strength, error }
     }
 
-    /// The largest κλ that a map of these texels takes over `extent` world units, positions being uncertain by `margin`.
-    fn strongest(&self, extent: f64, margin: f64) -> f64 {
+    /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain by these margins.
+    /// None for bodies that are no longer than their positions are uncertain.
+    fn strongest(&self, around: &WarpFrame, sight: &Sight, margin: f64, margin_of_casters: f64) -> f64 {
+        let extent = around.extent;
         let by_border = MOST_HORIZON * self.texels.over_window() / self.texels.border();
-        let by_rounding = MOST_ROUNDING * extent / margin;
-        STRONGEST.min(by_border).min(by_rounding)
+        let by_receivers = MOST_ROUNDING * (extent / margin - 1.0).max(0.0);
+        let by_casters = MOST_ROUNDING_OF_CASTERS * extent / margin_of_casters;
+        // f64 bends a point by the distance from the anchor times what W loses, which grows with that distance as well.
+        let reach = sight.points.iter().fold(around.top.length(), |reach, point| reach.max(point.length()));
+        let by_distance = MOST_ROUNDING / (ROUNDINGS * f64::EPSILON) * (extent / (2.0 * reach)).powi(2);
+        STRONGEST.min(by_border).min(by_receivers).min(by_casters).min(by_distance)
+    }
+
+    /// What f32 may lose of the positions of casters, which stand before the body as far as their bounds reach towards the light.
+    fn margin_of_casters(&self, body: &FocusBody) -> f64 {
+        let casters = &self.input.scene.casters;
+        let first = self.travel.dot(casters.centre() - self.input.origin) - self.travel.abs().dot(casters.half_size());
+        let last = body.vertices.iter().map(|vertex| self.travel.dot(*vertex)).fold(f64::NEG_INFINITY, f64::max);
+        let reach = body.vertices.iter().fold(0.0, |reach: f64, vertex| reach.max(vertex.abs().max_element()));
+        rounding(reach + (last - first).max(0.0), self.input.origin)
     }
 
     /// The window around a body in the fixed frame of the light.

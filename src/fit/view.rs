@@ -156,3 +156,109 @@ impl Fitter<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use crate::remix::Remix;
+    use crate::report::LeftOut;
+    use crate::scene::{Aabb, MapBudget, Scene};
+    use crate::technique::ShadowTechnique;
+    use crate::warp::Warp;
+    use crate::warp::bend::Bend;
+    use crate::warp::sight::Sight;
+    use glam::DMat4;
+
+    const SIDE: u32 = 2048;
+    const TRAVEL: DVec3 = DVec3::new(0.36, -0.8, 0.48);
+
+    /// A view over open ground, `offset` away from the world's origin; render space around the eye, or around the world's origin.
+    fn input(offset: f64, around_eye: bool) -> FitInput<'static> {
+        let eye = DVec3::new(0.6, 0.48, -0.64) * offset;
+        let world_from_view = DMat4::from_translation(eye) * DMat4::from_rotation_y(0.3);
+        FitInput {
+            camera: Camera::perspective(world_from_view, 1.0, 1.5, 0.1, 100.0),
+            light: crate::Light::Directional { travel: TRAVEL },
+            scene: Scene::within(Aabb::new(eye - 300.0, eye + 300.0)),
+            map: MapBudget::one(SIDE),
+            origin: if around_eye { eye } else { DVec3::ZERO },
+            previous: None,
+        }
+    }
+
+    /// Positions all over the view, world space.
+    fn positions(camera: &Camera) -> impl Iterator<Item = DVec3> {
+        let (origin, camera) = (camera.eye(), *camera);
+        (0..9 * 9 * 9).map(move |index| {
+            let [x, y, z] = [index % 9, index / 9 % 9, index / 81].map(|step| f64::from(step) / 8.0);
+            let depth = 0.1 * 1000.0_f64.powf(z);
+            let (start, direction) = camera.ray(camera.projection.size_at(1.0) * (DVec2::new(x, y) - 0.5), origin);
+            origin + start + direction * depth
+        })
+    }
+
+    /// Largest distance, in texels, between where f32 and f64 put positions in view, for a warp of any strength.
+    fn lost(input: &FitInput, strength: f64) -> f64 {
+        let texels = Texels::of(SIDE, Pcf::default());
+        let body = crate::focus::FocusBody::of_view(&input.camera, &input.scene, TRAVEL, input.origin).unwrap();
+        let sight = Sight::of(&input.camera, TRAVEL, &body.vertices, input.origin);
+        let frame = sight.frame();
+        let bend = Bend::new(&frame, strength / frame.extent);
+        let margin = rounding_margin(&body.vertices, input.origin);
+        let window = Window::turned(sight.light, bend, frame.axis, &body.vertices, margin);
+        let drawn = window.bordered(window.size() / texels.over_window());
+        texels_lost(&(drawn.clip_from_ray(-1e3, 1e3) * window.light.ray_from_render()), input)
+    }
+
+    fn texels_lost(clip_from_render: &Map<Clip, Render>, input: &FitInput) -> f64 {
+        let narrow = clip_from_render.narrow();
+        let off = |position: DVec3| {
+            let exact = clip_from_render.0 * (position - input.origin).extend(1.0);
+            let narrow = narrow * (position - input.origin).as_vec3().extend(1.0);
+            let moved = (narrow.truncate().truncate() / narrow.w).as_dvec2() - exact.truncate().truncate() / exact.w;
+            0.5 * f64::from(SIDE) * moved.abs().max_element()
+        };
+        positions(&input.camera).map(off).fold(0.0, f64::max)
+    }
+
+    /// What f32 loses by world offset and strength: around the eye, 1/100 of a texel at most at every offset and every strength up to
+    /// 1e5, of which fits give those up to 1e3 (limits come first); around the world's origin, many texels.
+    #[test]
+    fn what_f32_loses() {
+        let strengths = [0.0, 1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6];
+        println!("texels of {SIDE} lost; kappa lambda {strengths:?}");
+        for around_eye in [true, false] {
+            for offset in [0.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7] {
+                let input = input(offset, around_eye);
+                let lost = strengths.map(|strength| lost(&input, strength));
+                let line: Vec<String> = lost.iter().map(|lost| format!("{lost:8.1e}")).collect();
+                println!("origin at eye {around_eye:5}, offset {offset:7.0e}: {}", line.join(" "));
+                if around_eye {
+                    let [served @ .., strongest] = lost;
+                    assert!(served.iter().all(|lost| *lost <= 0.01), "offset {offset}: {lost:?}");
+                    // Missed here, by a factor of three: a thousand times stronger than any fit is.
+                    assert!(strongest <= 0.04, "offset {offset}: {strongest}");
+                }
+            }
+        }
+    }
+
+    /// What stops strengths before precision does: the map's border, at this size.
+    #[test]
+    fn what_limits_strengths() {
+        for offset in [0.0, 1e3, 1e7] {
+            for (side, applied) in [(256, 24.6), (2048, 203.8), (16_384, 1000.0)] {
+                let input = FitInput { map: MapBudget::one(side), ..input(offset, true) };
+                let remix = Remix { warp: Warp::Fixed { strength: 1e3 }, ..Remix::default() };
+                let frame = remix.fit(&input).unwrap();
+                let limited = |cut: &LeftOut| matches!(cut.why, Why::WarpTooStrong { .. });
+                println!("offset {offset:e}, {side} texels: {} of 1000", frame.views[0].warp_strength);
+                assert!((frame.views[0].warp_strength - applied).abs() < 0.1, "{}", frame.views[0].warp_strength);
+                assert_eq!(frame.left_out.iter().any(limited), applied < 1e3);
+            }
+        }
+        let stronger = Remix { warp: Warp::Fixed { strength: 1e6 }, ..Remix::default() };
+        assert!(matches!(stronger.fit(&input(0.0, true)), Err(crate::FitError::OutOfRange { .. })));
+    }
+}

@@ -70,7 +70,9 @@ impl WarpFrame {
     /// beyond 1e60) are ignored; an axis without direction is +x; a hull without extent gets one, rounding wide. O(points).
     #[must_use]
     pub fn around(axis: DVec2, through: DVec2, hull: &[DVec2]) -> Self {
-        let axis = if axis.is_finite() { axis.normalize_or(DVec2::X) } else { DVec2::X };
+        // Axes may be so short that their squares underflow; one without direction becomes NaN here.
+        let scaled = axis / axis.abs().max_element();
+        let axis = if scaled.is_finite() { scaled.normalize_or(DVec2::X) } else { DVec2::X };
         let through = if usable(&through) { through } else { centre(hull) };
         // Least and greatest u from `through`.
         let (low, high) = range(hull, |point| (point - through).dot(axis));
@@ -334,6 +336,15 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// A view that leaves the light by 1e-161 radians has a direction, whose square underflows: the axis came out too long by a tenth.
+    #[test]
+    fn short_axes_are_directions() {
+        for log in [-320, -161, 0, 161, 300] {
+            let axis = WarpFrame::around(DVec2::new(3.0, -4.0) * 10_f64.powi(log), DVec2::ZERO, &SQUARE).axis;
+            assert!((axis.length() - 1.0).abs() < 1e-15, "{log}: {axis}");
         }
     }
 }

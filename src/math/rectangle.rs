@@ -36,10 +36,11 @@ pub(crate) fn steady_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>)
     // Their mean direction, four times around.
     let mut sum = DVec2::ZERO;
     for (edge, area) in edges {
-        let length = edge.length();
-        let along = edge / length;
+        // Edges may be so short that their squares underflow.
+        let size = edge.abs().max_element();
+        let (along, length) = (edge / size).normalize_and_length();
         let twice = along.rotate(along);
-        sum += twice.rotate(twice) * (length * (-(area / least - 1.0) / SOFTNESS).exp());
+        sum += twice.rotate(twice) * (size * length * (-(area / least - 1.0) / SOFTNESS).exp());
     }
     let axis = DVec2::from_angle(0.25 * sum.to_angle());
     axis.is_finite().then_some(axis)

@@ -20,6 +20,10 @@ pub(crate) struct Bend {
     pub(crate) anchor: DVec2,
 }
 
+/// Roundings of f64 in a bent coordinate: products with g and o (2), their sums (2), and as many in the rows of a matrix. Fewer can leave
+/// the body's vertices outside; more costs texels only where the bent body is as small as rounding.
+pub(crate) const ROUNDINGS: f64 = 8.0;
+
 impl Bend {
     /// No warp.
     pub(crate) const NONE: Self = Self { gradient: DVec2::ZERO, anchor: DVec2::ZERO };
@@ -58,13 +62,16 @@ impl Bend {
         (bent - self.anchor * (1.0 - 1.0 / w)) * w
     }
 
-    /// How far a box of half size `margin` around a point reaches once it is bent, to first order in each axis.
+    /// How far a box of half size `margin` around a point reaches once it is bent, to first order in each axis, and what f64 loses of it.
     pub(crate) fn reach(&self, at: DVec2, margin: f64) -> DVec2 {
         let w = self.w(at);
         let bent = (at - self.anchor) / w;
+        // A body far beside its centre line is bent by far more than its size.
+        let (far, turn) = (self.anchor.length(), self.gradient.length());
+        let lost = ROUNDINGS * f64::EPSILON * turn * (far + bent.length()) * (far + at.length()) / w;
         let side = |along: f64, gradient: DVec2, own: DVec2| {
             let row = own - gradient * along;
-            (row.x.abs() + row.y.abs()) * margin / w
+            (row.x.abs() + row.y.abs()) * margin / w + lost
         };
         DVec2::new(side(bent.x, self.gradient, DVec2::X), side(bent.y, self.gradient, DVec2::Y))
     }

@@ -152,10 +152,17 @@ impl Predictor {
         least(limit, |strength| self.error(strength))
     }
 
-    /// A strength, limited to what is predicted to be no worse than uniform.
+    /// A strength, limited to what is predicted to be no worse than `uniform`, the error without a warp.
     pub(crate) fn guarded(&self, strength: f64) -> f64 {
         not_worse(strength, |strength| self.error(strength))
     }
+}
+
+/// E without a warp, by the view's axis: the scale on which all methods are measured, whatever axis they bend along.
+pub(crate) fn uniform_error(sight: &Sight) -> f64 {
+    let frame = sight.frame();
+    let [a0, a1] = frame.sides(0.0, &sight.points);
+    a1 - a0 + frame.extent
 }
 
 /// Rays over the part of the picture that the body covers: positions at eye depth ζ are start + direction · ζ.

@@ -33,18 +33,23 @@ use crate::math::homography::WarpFrame;
 /// Homogeneous: (x, y, z, w) with z ∈ [0, 1] from near to far. w > 0: in front of the viewer; w < 0: behind (inverted).
 #[must_use]
 pub fn post_perspective_light(sides: [f64; 4], near: f64, far: f64, towards: DVec3) -> DVec4 {
-    let row = camera_rows(sides, near, far);
+    let row = camera_rows(sides, near, far - near, 0.0);
     DVec4::from_array(row.map(|row| row.dot(towards.extend(0.0))))
 }
 
 /// Rows of M over view space: a frustum (left, right, down, up tangents) to the cube [−1, 1]² × [0, 1].
-fn camera_rows([left, right, down, up]: [f64; 4], near: f64, far: f64) -> [DVec4; 4] {
+///
+/// The frustum begins `near` before the eye, is `depth` long, and its apex is `back` behind the eye; written so that nothing cancels
+/// where `back` is far larger than the frustum.
+fn camera_rows([left, right, down, up]: [f64; 4], near: f64, depth: f64, back: f64) -> [DVec4; 4] {
     let (width, height) = (right - left, up - down);
+    let (aside, above) = ((right + left) / width, (up + down) / height);
+    let scale = (near + depth + back) / depth;
     [
-        DVec4::new(2.0 / width, 0.0, (right + left) / width, 0.0),
-        DVec4::new(0.0, 2.0 / height, (up + down) / height, 0.0),
-        DVec4::new(0.0, 0.0, -far / (far - near), -near * far / (far - near)),
-        DVec4::new(0.0, 0.0, -1.0, 0.0),
+        DVec4::new(2.0 / width, 0.0, aside, -aside * back),
+        DVec4::new(0.0, 2.0 / height, above, -above * back),
+        DVec4::new(0.0, 0.0, -scale, -scale * near),
+        DVec4::new(0.0, 0.0, -1.0, back),
     ]
 }
 
@@ -63,7 +68,7 @@ pub(crate) fn choose(camera: &Camera, sight: &Sight, pull_back: f64) -> Choice {
     }
     let narrower = farthest / (farthest + pull_back);
     let sides = [left, right, down, up].map(|tangent| tangent * narrower);
-    let rows = camera_rows(sides, nearest + pull_back, farthest + pull_back);
+    let rows = camera_rows(sides, nearest, farthest - nearest, pull_back);
     // (1) and (2) as a linear function of view space.
     let rotate = |vector: DVec3| camera.world_from_view.transpose().transform_vector3(vector);
     let towards = -rotate(sight.light.travel());
@@ -74,12 +79,11 @@ pub(crate) fn choose(camera: &Camera, sight: &Sight, pull_back: f64) -> Choice {
     let [x, y, z, w] = rows;
     let slope = x * axis.x + y * axis.y + z * axis.z - w * axis.dot(CENTRE);
     let function = w - slope * kappa;
-    // Its gradient across the light, and its value at the pulled-back eye.
+    // Its gradient across the light, and its value on the top line.
     let gradient =
         DVec2::new(function.truncate().dot(rotate(sight.light.p())), function.truncate().dot(rotate(sight.light.q())));
-    let eye = sight.eye - sight.view * pull_back;
-    let frame = WarpFrame::around(gradient, eye, &sight.points);
-    let at_top = function.w + gradient.dot(frame.top - eye);
+    let frame = WarpFrame::around(gradient, sight.eye, &sight.points);
+    let at_top = function.w + gradient.dot(frame.top - sight.eye);
     // At or behind the centre of projection: as strong as it gets.
     let strength = if at_top > 0.0 { gradient.length() * frame.extent / at_top } else { f64::INFINITY };
     if strength.is_nan() { uniform } else { Choice { frame, strength } }

@@ -21,7 +21,7 @@ const STEPS: u32 = 26;
 
 /// κλ in [0, `limit`] of the least error; 0 where no strength is better than none.
 ///
-/// Exact to 4e-6 (1 + κλ)² for errors that fall to one valley and rise behind it. 30 evaluations.
+/// Exact to 4e-6 (1 + κλ)² for errors that fall to one valley and rise behind it. 33 evaluations.
 pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
     let at = |share: f64| error(strength_of(share));
     let (mut low, mut high) = (0.0, share_of(limit));
@@ -38,8 +38,10 @@ pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
             error_right = at(right);
         }
     }
-    let best = low.midpoint(high);
-    if at(best) < error(0.0) { strength_of(best) } else { 0.0 }
+    // The ends are candidates themselves.
+    let middle = strength_of(low.midpoint(high));
+    let best = if error(limit) < error(middle) { limit } else { middle };
+    if error(best) < error(0.0) { best } else { 0.0 }
 }
 
 /// Steps in [`not_worse`]: false position with Illinois' remedy gains more than a digit each.

@@ -79,14 +79,16 @@ impl Sight {
         }
     }
 
-    /// The frame of a warp along any direction.
+    /// The frame of a warp along any direction, its centre line through the middle of the body.
     pub(crate) fn frame_along(&self, axis: DVec2) -> WarpFrame {
-        WarpFrame::around(axis, self.eye, &self.points)
+        WarpFrame::around(axis, self.middle, &self.points)
     }
 
     /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest.
+    ///
+    /// The centre line passes through the eye, as in the papers.
     pub(crate) fn frame(&self) -> WarpFrame {
-        self.frame_along(self.view)
+        WarpFrame::around(self.view, self.eye, &self.points)
     }
 
     /// How well the view has a direction across the light, 0 (view along the light) to 1 (the light is outside of the picture): smooth,

@@ -34,7 +34,9 @@ impl Window {
             let (bent, reach) = (bend.bent(across), bend.reach(across, margin));
             (low.min(bent - reach), high.max(bent + reach))
         });
-        Self { light, bend, low, high }
+        // W is narrowed apart from p and q: what it loses moves a vertex by as much of its distance from the middle.
+        let lost = (high - low) * (0.5 * margin * bend.gradient.abs().element_sum());
+        Self { light, bend, low: low - lost, high: high + lost }
     }
 
     /// The same, in a frame in which the window is nearly the smallest, and that turns continuously with the body.
@@ -63,10 +65,12 @@ impl Window {
         Self { low: self.low - border, high: self.high + border, ..*self }
     }
 
-    /// Its corners in (p, q), unbent.
-    pub(crate) fn corners(&self) -> [DVec2; 4] {
+    /// Its corners in (p, q), unbent. None where one lies at or beyond the horizon: the window has no end there.
+    pub(crate) fn corners(&self) -> Option<[DVec2; 4]> {
         let (low, high) = (self.low, self.high);
-        [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)].map(|corner| self.bend.unbent(corner))
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let ends = corners.iter().all(|corner| self.bend.gradient.dot(*corner - self.bend.anchor) < 1.0);
+        ends.then(|| corners.map(|corner| self.bend.unbent(corner)))
     }
 
     /// The sides of a texel at a point (p, q) of the frame, world units across the light; `texel` is their length, bent units.

@@ -6,7 +6,7 @@
     reason = "each test binary uses its own part; nothing here is a library"
 )]
 
-use antumbra::{Aabb, Camera, DepthRange, FitInput, Light, MapBudget, Projection, Scene};
+use antumbra::{Aabb, Camera, DepthRange, FitInput, Light, MapBudget, Object, Projection, Scene};
 use glam::{DMat4, DQuat, DVec3};
 use proptest::prelude::*;
 
@@ -40,13 +40,15 @@ fn bounds(centre: DVec3) -> impl Strategy<Value = Aabb> {
 }
 
 /// Everything a fit reads, without borrowed parts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Inputs {
     pub camera: Camera,
     pub travel: DVec3,
     pub casters: Aabb,
     pub receivers: Aabb,
+    pub objects: Vec<Object>,
     pub visible: Option<DepthRange>,
+    pub points: Vec<DVec3>,
     pub side: u32,
     pub origin: DVec3,
 }
@@ -59,15 +61,52 @@ impl Inputs {
             scene: Scene {
                 casters: self.casters,
                 receivers: self.receivers,
-                objects: &[],
+                objects: &self.objects,
                 visible_depth: self.visible,
-                visible_points: &[],
+                visible_points: &self.points,
             },
             map: MapBudget::one(self.side),
             origin: self.origin,
             previous: None,
         }
     }
+
+    /// The boxes that cast: those of the objects, where there are any; none for empty bounds.
+    pub fn caster_boxes(&self) -> Vec<Aabb> {
+        if self.objects.is_empty() {
+            return [self.casters].into_iter().filter(|bounds| !bounds.is_empty()).collect();
+        }
+        self.objects.iter().filter(|object| object.casts).map(|object| object.bounds).collect()
+    }
+}
+
+/// A point of a box, by three shares.
+pub fn point_in(bounds: &Aabb, shares: [f64; 3]) -> DVec3 {
+    let at = bounds.min + (bounds.max - bounds.min) * DVec3::from_array(shares);
+    at.clamp(bounds.min, bounds.max)
+}
+
+/// Shares of a box or of a view volume: often 0 or 1.
+pub fn shares() -> impl Strategy<Value = [f64; 3]> {
+    prop::array::uniform3(prop_oneof![2 => 0.0..=1.0_f64, 1 => Just(0.0), 1 => Just(1.0)])
+}
+
+/// The ray from a point towards the light inside a box, if any: distances (first, last) from the point.
+pub fn towards_light(bounds: &Aabb, point: DVec3, travel: DVec3) -> Option<(f64, f64)> {
+    let (mut first, mut last) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        if travel[axis] == 0.0 {
+            if point[axis] < bounds.min[axis] || point[axis] > bounds.max[axis] {
+                return None;
+            }
+            continue;
+        }
+        let a = (bounds.min[axis] - point[axis]) / -travel[axis];
+        let b = (bounds.max[axis] - point[axis]) / -travel[axis];
+        first = first.max(a.min(b));
+        last = last.min(a.max(b));
+    }
+    (first <= last).then_some((first, last))
 }
 
 fn projection() -> impl Strategy<Value = Projection> {
@@ -96,46 +135,108 @@ fn projection() -> impl Strategy<Value = Projection> {
     prop_oneof![4 => perspective, 1 => orthographic]
 }
 
-/// Worlds near and far, light along the view exactly or nearly, flat boxes, every lens from 1° to 179°, depths over
-/// eight decades or without end, maps of 1 to 16384 texels.
-pub fn inputs() -> impl Strategy<Value = Inputs> {
+/// What light is made of: any direction; or off the view, or against it, by an angle from rounding to a right angle.
+fn light() -> impl Strategy<Value = (DVec3, f64, f64)> {
+    let off = prop_oneof![1 => Just(1e-15), 1 => (-17.0..0.0_f64).prop_map(|log| 10.0_f64.powf(log))];
+    (direction(), prop_oneof![3 => Just(0.0), 1 => Just(1.0), 1 => Just(-1.0)], off)
+}
+
+/// Objects by shares of the casters' bounds, and whether they cast.
+fn objects() -> impl Strategy<Value = Vec<([f64; 3], [f64; 3], bool)>> {
+    prop_oneof![4 => Just(Vec::new()), 1 => prop::collection::vec((shares(), shares(), any::<bool>()), 1..5)]
+}
+
+/// Positions that the engine says are seen: none, few or many; in view, anywhere, and broken.
+fn points() -> impl Strategy<Value = Vec<([f64; 3], f64)>> {
+    let scale = prop_oneof![
+        6 => Just(1.0),
+        1 => prop::sample::select(vec![-1.0, 0.0, 1e-300, 1e9, 1e200, f64::NAN, f64::INFINITY, f64::NEG_INFINITY]),
+    ];
+    let point = (prop::array::uniform3(0.0..=1.0_f64), scale);
+    prop_oneof![
+        3 => Just(Vec::new()),
+        1 => prop::collection::vec(point.clone(), 1..4),
+        1 => prop::collection::vec(point, 20..60),
+    ]
+}
+
+/// Everything but the boxes, which lie about what the camera sees.
+#[derive(Clone, Debug)]
+struct Stage {
+    camera: Camera,
+    travel: DVec3,
+    visible: Option<DepthRange>,
+    points: Vec<DVec3>,
+    side: u32,
+    /// 0: the world's origin; 1: the eye; else an offset from the receivers.
+    origin: (u8, DVec3),
+    /// The middle of the receivers, roughly.
+    focus: DVec3,
+}
+
+fn stage() -> impl Strategy<Value = Stage> {
     let place = prop_oneof![3 => Just(0.0), 1 => (1.0..7.0_f64).prop_map(|log| 10.0_f64.powf(log))];
-    let light = prop_oneof![3 => direction().prop_map(|d| (d, 0.0)), 1 => (direction(), Just(1.0)), 1 => (direction(), Just(-1.0))];
     let visible = prop_oneof![3 => Just(None), 1 => (0.0..10.0_f64, 0.0..1e4_f64).prop_map(Some)];
     // Render space around the world's origin, the eye, or somewhere near the scene.
     let offset = (direction(), -3.0..5.0_f64).prop_map(|(to, log)| to * 10.0_f64.powf(log));
-    let origin = (0..3_u8, offset);
-    let focus = (0.0..1.0_f64, 0.0..1.0_f64, 0.0..1.0_f64);
-    (place, (direction(), direction()), light, projection(), visible, 0..15_u32, origin, focus).prop_flat_map(
-        |(distance, (to, view), (light, along), projection, visible, log_side, (place_of_origin, offset), focus)| {
+    let focus = prop::array::uniform3(0.0..1.0_f64);
+    let rest = ((0..3_u8, offset), focus, points());
+    (place, (direction(), direction()), light(), projection(), visible, 0..15_u32, rest).prop_map(
+        |(distance, (to, view), (light, along, off), projection, visible, log_side, (origin, focus, points))| {
             let eye = to * distance;
             let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, view);
             let camera = Camera {
                 projection,
                 ..Camera::perspective(DMat4::from_rotation_translation(rotation, eye), 1.0, 1.0, 1.0, 2.0)
             };
-            let travel = if along == 0.0 { light } else { (view * along + light * 1e-15).normalize() };
+            let travel = if along == 0.0 { light } else { (view * along + light * off).normalize_or(view) };
+            let points = points.into_iter().map(|(shares, scale)| view_point(&camera, shares) * scale).collect();
             let visible = visible.map(|(near, length)| DepthRange { near, far: near + length });
-            let focus = view_point(&camera, [focus.0, focus.1, focus.2]);
-            (bounds(focus), size()).prop_flat_map(move |(receivers, distance)| {
-                let above = receivers.centre() - travel * distance;
-                let origin = match place_of_origin {
-                    0 => DVec3::ZERO,
-                    1 => eye,
-                    _ => receivers.centre() + offset,
-                };
-                bounds(above).prop_map(move |casters| Inputs {
-                    camera,
-                    travel,
-                    casters,
-                    receivers,
-                    visible,
-                    side: 1 << log_side,
-                    origin,
-                })
-            })
+            let focus = view_point(&camera, focus);
+            Stage { camera, travel, visible, points, side: 1 << log_side, origin, focus }
         },
     )
+}
+
+/// Worlds near and far, light along the view exactly or nearly, flat boxes and none, eyes inside casters, every lens from 1° to 179°,
+/// depths over eight decades or without end, maps of 1 to 16384 texels.
+pub fn inputs() -> impl Strategy<Value = Inputs> {
+    let kind = prop_oneof![16 => Just(0_u8), 4 => Just(1), 1 => Just(2), 1 => Just(3)];
+    (stage(), kind).prop_flat_map(|(stage, kind)| {
+        (bounds(stage.focus), size(), Just(stage), objects()).prop_flat_map(
+            move |(receivers, distance, stage, objects)| {
+                let above = receivers.centre() - stage.travel * distance;
+                let origin = match stage.origin {
+                    (0, _) => DVec3::ZERO,
+                    (1, _) => stage.camera.eye(),
+                    (_, offset) => receivers.centre() + offset,
+                };
+                (bounds(above), Just((stage, objects))).prop_map(move |(casters, (stage, objects))| {
+                    let eye = stage.camera.eye();
+                    let casters = match kind {
+                        1 => casters.union(Aabb::new(eye - 0.01, eye + 0.01)),
+                        2 => Aabb::EMPTY,
+                        _ => casters,
+                    };
+                    let within = |(one, other, casts): ([f64; 3], [f64; 3], bool)| {
+                        let (one, other) = (point_in(&casters, one), point_in(&casters, other));
+                        Object { bounds: Aabb::new(one.min(other), one.max(other)), casts }
+                    };
+                    Inputs {
+                        camera: stage.camera,
+                        travel: stage.travel,
+                        casters,
+                        receivers: if kind == 3 { Aabb::EMPTY } else { receivers },
+                        objects: if kind == 2 { Vec::new() } else { objects.into_iter().map(within).collect() },
+                        visible: stage.visible,
+                        points: stage.points,
+                        side: stage.side,
+                        origin,
+                    }
+                })
+            },
+        )
+    })
 }
 
 /// The point of the view volume at these shares of its width, height and (geometrically) depth; infinite depth ends
