@@ -1,5 +1,6 @@
 //! Numbers that the papers print, or that follow from their formulas: recomputed, printed beside them, and compared.
 
+use antumbra::lab::depth_error::{Layout, crossing};
 use antumbra::warp::homography::{
     Homography, LINE_80_PERCENT, LINE_HALF, LINE_TWO_THIRDS, WarpFrame, kappa_for_line, n_opt, n_opt_directional,
     n_opt_eye_range, n_opt_simple,
@@ -205,43 +206,16 @@ fn light_in_post_perspective_space() {
 
 // Error of a map over depth, Chong's and Lloyd's metric in one dimension.
 
-/// Ranges of depth [n, f] as maps see them: E(z) = (dz/ds) / z for s in [0, 1].
-#[derive(Clone, Copy)]
-enum Layout {
-    Uniform,
-    Logarithmic,
-    /// A projection from `back` behind the near plane's own centre.
-    Projection {
-        back: f64,
-    },
-}
-
-fn error(layout: Layout, [n, f]: [f64; 2], z: f64) -> f64 {
-    match layout {
-        Layout::Uniform => (f - n) / z,
-        Layout::Logarithmic => (f / n).ln(),
-        Layout::Projection { back } => (f - n) * (z + back).powi(2) / ((n + back) * (f + back) * z),
-    }
-}
-
-/// Where two layouts err alike, between `low` and `high` (bisection).
-fn crossing(a: Layout, b: Layout, range: [f64; 2], [mut low, mut high]: [f64; 2]) -> f64 {
-    let above = |z| error(a, range, z) > error(b, range, z);
-    let at_low = above(low);
-    assert_ne!(at_low, above(high), "the layouts cross");
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if above(middle) == at_low { low = middle } else { high = middle }
-    }
-    low
-}
-
 const DEPTHS: [f64; 2] = [1.0, 100.0];
 
 #[test]
 fn error_over_depth() {
-    let layouts =
-        [Layout::Uniform, Layout::Logarithmic, Layout::Projection { back: 0.0 }, Layout::Projection { back: 10.0 }];
+    let layouts = [
+        Layout::Uniform,
+        Layout::Logarithmic,
+        Layout::Projection { pull_back: 0.0 },
+        Layout::Projection { pull_back: 10.0 },
+    ];
     for (z, expected, digits) in [
         (1.0, [99.0, 4.60517, 0.99, 9.9], [5, 5, 5, 5]),
         (2.0, [49.5, 4.60517, 1.98, 5.89091], [5, 5, 5, 5]),
@@ -254,34 +228,39 @@ fn error_over_depth() {
         for index in 0..layouts.len() {
             printed(
                 &format!("E({z}), layout {index}"),
-                error(layouts[index], DEPTHS, z),
+                layouts[index].error(DEPTHS, z),
                 expected[index],
                 digits[index],
             );
         }
     }
-    close("ln 100", error(Layout::Logarithmic, DEPTHS, 3.0), 4.605_170_185_988_091, ROUNDING);
-    close("least of o = 10", error(layouts[3], DEPTHS, 10.0), 3.272_727_272_727_272_7, ROUNDING);
+    close("ln 100", Layout::Logarithmic.error(DEPTHS, 3.0), 4.605_170_185_988_091, ROUNDING);
+    close("least of o = 10", layouts[3].error(DEPTHS, 10.0), 3.272_727_272_727_272_7, ROUNDING);
     // Nothing is gained in sum: ∫ dz / (z E(z)) = 1 for every layout (midpoint rule over ln z).
     for layout in layouts {
         let steps = 20_000;
         let width = DEPTHS[1].ln() / f64::from(steps);
         let depths = (0..steps).map(|step| ((f64::from(step) + 0.5) * width).exp());
-        let sum: f64 = depths.map(|z| width / error(layout, DEPTHS, z)).sum();
+        let sum: f64 = depths.map(|z| width / layout.error(DEPTHS, z)).sum();
         assert!((sum - 1.0).abs() < 1e-6, "{sum}");
     }
 }
 
 #[test]
 fn crossings_of_the_errors() {
-    let [uniform, log, none, ten] =
-        [Layout::Uniform, Layout::Logarithmic, Layout::Projection { back: 0.0 }, Layout::Projection { back: 10.0 }];
-    let at = |a, b, between| crossing(a, b, DEPTHS, between);
+    let [uniform, log, none, ten] = [
+        Layout::Uniform,
+        Layout::Logarithmic,
+        Layout::Projection { pull_back: 0.0 },
+        Layout::Projection { pull_back: 10.0 },
+    ];
+    let at = |a, b, between| crossing(a, b, DEPTHS, between).expect("the layouts cross");
     close("uniform and o = 0", at(uniform, none, [1.0, 100.0]), 10.0, ROUNDING);
     close("uniform and o = 10", at(uniform, ten, [1.0, 100.0]), 24.785_054_261_852_173, ROUNDING);
     printed("logarithmic and uniform", at(log, uniform, [1.0, 100.0]), 21.49758, 5);
     printed("logarithmic and o = 10, near", at(log, ten, [1.0, 10.0]), 3.00475, 5);
     printed("logarithmic and o = 10, far", at(log, ten, [10.0, 100.0]), 33.28067, 5);
+    assert_eq!(crossing(uniform, log, DEPTHS, [1.0, 20.0]), None, "uniform is worse all the way");
 }
 
 /// Texels that an overhead light needs, S = `M_s` `M_t`, for a projection whose near plane is n' from its centre.
@@ -301,7 +280,7 @@ fn storage_factors() {
     for n_prime in [1.0, 11.0, 1.0 + 1000_f64.sqrt()] {
         close("perspective, 1000", storage(range, n_prime), 999.0, 1e-12);
     }
-    close("logarithmic, 1000", error(Layout::Logarithmic, range, 1.0), 6.907_755_278_982_137, ROUNDING);
+    close("logarithmic, 1000", Layout::Logarithmic.error(range, 1.0), 6.907_755_278_982_137, ROUNDING);
     for (n_prime, expected) in [(1.0, 99.0), (11.0, 99.0)] {
         close("perspective, 100", storage(DEPTHS, n_prime), expected, 1e-12);
     }

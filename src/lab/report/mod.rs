@@ -7,6 +7,7 @@
 mod column;
 mod csv;
 mod curves;
+mod diagram;
 mod gallery;
 mod html;
 mod markdown;
@@ -24,6 +25,7 @@ use std::time::Duration;
 
 pub use column::{COLUMNS, Cell, Column};
 pub use csv::{header, read_csv, write_csv};
+pub use diagram::{Diagram, Layer, Look, Spot, Tick, diagram_svg};
 pub use html::write_html;
 pub use markdown::markdown_table;
 pub use plot::{Axes, Axis, Floor, PlotPoint, Series, error_time_svg};

@@ -14,12 +14,12 @@ use plotters::style::{Color, IntoFont};
 
 use super::html::Escaped;
 use super::plot_marks::{self, Mark};
-use super::plot_scale::{self, Ticks};
+use super::plot_scale::{self, Scale, Ticks};
 
 /// Width of the picture, CSS pixels; text sizes below suit this width.
 const WIDTH: u32 = 640;
 /// Height of title and axes together, CSS pixels; the legend comes below.
-const AXES_HEIGHT: u32 = 430;
+pub(super) const AXES_HEIGHT: u32 = 430;
 /// Room above the frame for the title and the name of the upright axis, CSS pixels.
 const TOP: u32 = 58;
 /// Room left of the frame for its ticks, CSS pixels: enough for `2×10⁻⁵`.
@@ -96,6 +96,15 @@ pub(super) struct Frame {
     pub(super) y: Range<i32>,
 }
 
+impl Frame {
+    /// Where a point stands, pixels; both values are positive.
+    pub(super) fn at(&self, [x_scale, y_scale]: [&Scale; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+        let along =
+            |range: &Range<i32>, share: f64| f64::from(range.start) + share * f64::from(range.end - range.start);
+        [along(&self.x, x_scale.share(x)), along(&self.y, 1.0 - y_scale.share(y))]
+    }
+}
+
 /// Draws the curves as one SVG document.
 ///
 /// Nothing is dropped: points without a figure are listed below the plot, points at zero sit on its edge and are counted,
@@ -115,7 +124,7 @@ pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
         Err(error) => return document(title, &plot_marks::apology(&error), f64::from(AXES_HEIGHT)),
     };
     // Write what it has no words for: names, curves, legend.
-    name_axes(&mut body, title, axes, &frame);
+    name_axes(&mut body, title, [&axes.x.name, &axes.y.name], &frame);
     if empty {
         plot_marks::no_data(&mut body, &frame);
     }
@@ -143,50 +152,61 @@ fn draw_axes(
     y_range: &Range<f64>,
     empty: bool,
 ) -> Result<(String, Frame, Marks), Box<dyn Error>> {
-    let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, (WIDTH, AXES_HEIGHT)).into_drawing_area();
-    // Axes without data get no ticks: any number there would be made up.
-    let ticks = |range| if empty { Ticks { labelled: vec![], faint: vec![] } } else { plot_scale::ticks(range) };
-    let (x_ticks, y_ticks) = (ticks(x_range), ticks(y_range));
-    let mut chart = ChartBuilder::on(&area)
-        .margin_top(TOP)
-        .margin_right(RIGHT)
-        .x_label_area_size(BOTTOM)
-        .y_label_area_size(LEFT)
-        .build_cartesian_2d(
-            x_range.clone().log_scale().with_key_points(x_ticks.labelled).with_light_points(x_ticks.faint),
-            y_range.clone().log_scale().with_key_points(y_ticks.labelled).with_light_points(y_ticks.faint),
-        )?;
-    let number = |v: &f64| plot_scale::label(*v);
-    chart
-        .configure_mesh()
-        .axis_style(INK.mix(0.55))
-        .bold_line_style(INK.mix(GRID))
-        .light_line_style(INK.mix(FAINT_GRID))
-        .x_label_formatter(&number)
-        .y_label_formatter(&number)
-        .label_style(("sans-serif", TICK_FONT).into_font().color(&INK))
-        .draw()?;
+    let [mut x, mut y] = [x_range, y_range].map(|range| Scale::over(range.clone()));
+    if empty {
+        // Axes without data get no ticks: any number there would be made up.
+        x.ticks = Ticks { labelled: vec![], faint: vec![] };
+        y.ticks = Ticks { labelled: vec![], faint: vec![] };
+    }
+    let (body, frame) = mesh(&x, &y)?;
     // Map every point that has a place; what a logarithm cannot show sits on the edge.
-    let at = |x: f64, y: f64| {
-        chart.backend_coord(&(x.clamp(x_range.start, x_range.end), y.clamp(y_range.start, y_range.end)))
+    let at = |level: f64, upright: f64| {
+        let within = |scale: &Scale, value: f64| value.clamp(scale.range.start, scale.range.end);
+        let [x, y] = frame.at([&x, &y], [within(&x, level), within(&y, upright)]);
+        (x.round() as i32, y.round() as i32)
     };
-    let (x_pixels, y_pixels) = chart.plotting_area().get_pixel_range();
     let marked = |axis: &Axis| axis.floor.as_ref().map(|f| f.value).filter(|v| v.is_finite() && *v > 0.0);
     let marks = Marks {
         series: series.iter().map(|s| s.points.iter().filter_map(|p| Mark::new(p, at)).collect()).collect(),
         x_floor: marked(&axes.x).map(|v| [at(v, y_range.start), at(v, y_range.end)]),
         y_floor: marked(&axes.y).map(|v| [at(x_range.start, v), at(x_range.end, v)]),
     };
+    Ok((body, frame, marks))
+}
+
+/// Lets the plotting crate draw frame, grid and ticks of two axes.
+pub(super) fn mesh(x: &Scale, y: &Scale) -> Result<(String, Frame), Box<dyn Error>> {
+    let mut svg = String::new();
+    let area = SVGBackend::with_string(&mut svg, (WIDTH, AXES_HEIGHT)).into_drawing_area();
+    let axis = |scale: &Scale| {
+        let (range, ticks) = (scale.range.clone(), &scale.ticks);
+        range.log_scale().with_key_points(ticks.labelled.clone()).with_light_points(ticks.faint.clone())
+    };
+    let mut chart = ChartBuilder::on(&area)
+        .margin_top(TOP)
+        .margin_right(RIGHT)
+        .x_label_area_size(BOTTOM)
+        .y_label_area_size(LEFT)
+        .build_cartesian_2d(axis(x), axis(y))?;
+    chart
+        .configure_mesh()
+        .axis_style(INK.mix(0.55))
+        .bold_line_style(INK.mix(GRID))
+        .light_line_style(INK.mix(FAINT_GRID))
+        .x_label_formatter(&|tick| x.says(*tick))
+        .y_label_formatter(&|tick| y.says(*tick))
+        .label_style(("sans-serif", TICK_FONT).into_font().color(&INK))
+        .draw()?;
+    let (x_pixels, y_pixels) = chart.plotting_area().get_pixel_range();
     drop(chart);
     drop(area);
     // Keep what is between the document's tags, in the colour of the text around it.
     let body = svg.split_once('\n').map_or("", |(_, body)| body).trim_end().trim_end_matches("</svg>");
-    Ok((body.replace(INK_TEXT, "currentColor"), Frame { x: x_pixels, y: y_pixels }, marks))
+    Ok((body.replace(INK_TEXT, "currentColor"), Frame { x: x_pixels, y: y_pixels }))
 }
 
 /// Writes the title and the axes' names, all of them level, as nobody likes to tilt their head.
-fn name_axes(body: &mut String, title: &str, axes: &Axes, frame: &Frame) {
+pub(super) fn name_axes(body: &mut String, title: &str, [x, y]: [&str; 2], frame: &Frame) {
     let _ = write!(
         body,
         "<text class=\"title\" x=\"2\" y=\"17\">{}</text>\n\
@@ -194,15 +214,15 @@ fn name_axes(body: &mut String, title: &str, axes: &Axes, frame: &Frame) {
          <text class=\"axis\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{} →</text>\n",
         Escaped(title),
         frame.y.start - 16,
-        Escaped(&axes.y.name),
+        Escaped(y),
         frame.x.end,
         frame.y.end + 42,
-        Escaped(&axes.x.name),
+        Escaped(x),
     );
 }
 
 /// Wraps the body into a document with its own colours.
-fn document(title: &str, body: &str, height: f64) -> String {
+pub(super) fn document(title: &str, body: &str, height: f64) -> String {
     let style = include_str!("plot.css");
     format!(
         "<svg class=\"error-time\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \

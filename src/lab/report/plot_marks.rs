@@ -6,7 +6,7 @@ use super::html::Escaped;
 use super::plot::{Axes, Frame, Marks, PlotPoint, Series};
 
 /// Colours in `plot.css`, told apart by people who confuse red and green.
-const COLOURS: usize = 8;
+pub(super) const COLOURS: usize = 8;
 /// Half the width of a marker, CSS pixels.
 const MARKER: f64 = 4.0;
 /// Width of a letter of a point label, CSS pixels: an estimate, as the reader's font is not known here.
@@ -105,15 +105,11 @@ pub(super) fn curves(
     mut taken: Vec<Taken>,
     top: f64,
 ) -> f64 {
-    // Lay the legend out in as many columns as the longest name allows.
-    let longest = series.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
-    let width = f64::from(frame.x.end);
-    let column_width = LEGEND_SAMPLE + LEGEND_LETTER * count(longest);
-    let columns = fitting(width, column_width);
+    let names: Vec<&str> = series.iter().map(|series| series.name.as_str()).collect();
+    let (places, end) = legend_places(&names, frame, top);
     // Keep labels off all markers, then off each other.
     taken.extend(marks.series.iter().flatten().map(marker_box));
-    for (i, (series, marks)) in series.iter().zip(&marks.series).enumerate() {
-        let place = (2.0 + count(i % columns) * column_width, top + 8.0 + count(i / columns) * LEGEND_LINE);
+    for ((series, marks), place) in series.iter().zip(&marks.series).zip(places) {
         let _ = writeln!(body, "<g class=\"s c{}\"><title>{}</title>", series.style % COLOURS, Escaped(&series.name));
         curve(body, series.style, marks);
         for mark in marks {
@@ -122,7 +118,17 @@ pub(super) fn curves(
         legend(body, series, place);
         body.push_str("</g>\n");
     }
-    top + count(series.len().div_ceil(columns)) * LEGEND_LINE + 4.0
+    end
+}
+
+/// Lays a legend out in as many columns as its longest name allows: where each line of it stands, and where it ends.
+pub(super) fn legend_places(names: &[&str], frame: &Frame, top: f64) -> (Vec<(f64, f64)>, f64) {
+    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let column_width = LEGEND_SAMPLE + LEGEND_LETTER * count(longest);
+    let columns = fitting(f64::from(frame.x.end), column_width);
+    let place = |i: usize| (2.0 + count(i % columns) * column_width, top + 8.0 + count(i / columns) * LEGEND_LINE);
+    let end = top + count(names.len().div_ceil(columns)) * LEGEND_LINE + 4.0;
+    ((0..names.len()).map(place).collect(), end)
 }
 
 /// Draws one curve: its line, a wide unseen line that is easier to point at, and its markers.
@@ -243,7 +249,7 @@ fn marker_box(mark: &Mark) -> Taken {
 }
 
 /// The outline of a marker: circle, square, triangle, diamond, upturned triangle.
-fn marker(style: usize, x: f64, y: f64) -> String {
+pub(super) fn marker(style: usize, x: f64, y: f64) -> String {
     let r = MARKER;
     match style % SHAPES {
         0 => format!("M{} {y}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 {} 0z", x - r, 2.0 * r, -2.0 * r),

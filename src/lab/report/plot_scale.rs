@@ -33,6 +33,35 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     low / spread..high * spread
 }
 
+/// A logarithmic axis.
+pub(super) struct Scale {
+    /// From its lower to its upper end.
+    pub(super) range: Range<f64>,
+    /// Its ticks.
+    pub(super) ticks: Ticks,
+    /// What labelled ticks say instead of their value; those that are not here say that.
+    pub(super) words: Vec<(f64, String)>,
+}
+
+impl Scale {
+    /// Over a range, with the ticks that people read.
+    pub(super) fn over(range: Range<f64>) -> Self {
+        let ticks = ticks(&range);
+        Self { range, ticks, words: Vec::new() }
+    }
+
+    /// How far along the axis a positive value is: 0 to 1 within its range.
+    pub(super) fn share(&self, value: f64) -> f64 {
+        (value / self.range.start).ln() / (self.range.end / self.range.start).ln()
+    }
+
+    /// What a labelled tick says.
+    pub(super) fn says(&self, tick: f64) -> String {
+        let word = self.words.iter().find(|(at, _)| (at / tick - 1.0).abs() < 1e-9);
+        word.map_or_else(|| label(tick), |(_, word)| word.clone())
+    }
+}
+
 /// Where ticks stand.
 pub(super) struct Ticks {
     /// Ticks with a label and a strong line.
@@ -42,7 +71,7 @@ pub(super) struct Ticks {
 }
 
 /// Chooses ticks: powers of ten, and multiples of them when there are few.
-pub(super) fn ticks(range: &Range<f64>) -> Ticks {
+fn ticks(range: &Range<f64>) -> Ticks {
     #[expect(clippy::cast_possible_truncation, reason = "the range lies within 1e-16..1e16")]
     let exponents = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
     let multiples = |factors: &'static [u8]| {
@@ -62,7 +91,7 @@ fn tick(factor: u8, exponent: i32) -> f64 {
 }
 
 /// Writes a tick: `0.02`, `500`, or `2×10⁻⁵` beyond what is easy to read.
-pub(super) fn label(value: f64) -> String {
+fn label(value: f64) -> String {
     #[expect(clippy::cast_possible_truncation, reason = "ticks lie within 1e-16..1e16")]
     let exponent = (value.log10() + 1e-9).floor() as i32;
     if WRITTEN_OUT.contains(&exponent) {
