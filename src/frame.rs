@@ -176,8 +176,8 @@ pub struct Footprint {
     pub min: f32,
     /// Largest, pixels.
     pub max: f32,
-    /// Predicted picture error: the mean side of a texel over what is seen, world units. Pixels that are wrong are
-    /// proportional to it, so that it ranks maps of one picture. Kind of promise: typical (`docs/WARPS.md`).
+    /// Predicted picture error: the mean side of a texel over what is seen, world units. It ranks maps of one
+    /// picture; strong warps come out better than it says. Kind of promise: typical (`docs/WARPS.md`).
     pub error: f32,
 }
 

@@ -15,8 +15,8 @@
 //! first sum of (2) takes shadow edges to be anywhere along every ray of the picture that the body allows; the second one takes them to be
 //! where the engine says that surfaces are seen. An evaluation costs the side lines; the moments are taken once.
 //!
-//! Kind of promise: typical. `docs/WARPS.md` has the strength of least E beside the best one of a sweep, on many scenes: mostly within a tenth of
-//! its error, and what the exceptions are.
+//! Kind of promise: typical. `docs/WARPS.md` has the strength of least E beside the best one of a sweep, on many scenes:
+//! mostly within a tenth of its error, and what the exceptions are.
 //!
 //! # References
 //! - `MATH.md` section 0 (the closed form), section 8 (texels in the picture).
