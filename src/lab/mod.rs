@@ -6,6 +6,7 @@ pub mod comparison;
 pub mod cpu;
 pub mod experiment;
 pub mod files;
+pub mod footprint;
 pub mod gltf;
 pub mod gpu;
 pub mod metrics;
