@@ -186,7 +186,7 @@ fn footprint_line(shot: &Shot, measured: &Measured) -> String {
     };
     let predicted = shot.frame.predicted;
     let mut line = format!(
-        "texel {} px ({}–{}); facing light and eye {} px ({}–{}), predicted {}–{}",
+        "texel {} px ({}–{})\nwithout slant {} px ({}–{})\npredicted {}–{}",
         digits(texel.median),
         digits(texel.low),
         digits(texel.high),
@@ -196,11 +196,14 @@ fn footprint_line(shot: &Shot, measured: &Measured) -> String {
         digits(predicted.min.into()),
         digits(predicted.max.into()),
     );
-    if measured.unserved > 0.0 {
-        let _ = write!(line, "; {:.1} % outside the map", 100.0 * measured.unserved);
+    if measured.unserved > LEAST_UNSERVED {
+        let _ = write!(line, "\n{:.1} % outside the map", 100.0 * measured.unserved);
     }
     line
 }
+
+/// Share of the valid pixels outside of a map from which on it is said: less is rounding at the map's edge.
+const LEAST_UNSERVED: f64 = 5e-4;
 
 /// A length in pixels with two digits or so.
 fn digits(pixels: f64) -> String {

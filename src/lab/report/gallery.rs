@@ -121,7 +121,7 @@ fn write_card(sink: &mut impl Write, section: &SceneSection, picture: &Picture) 
         "<figure class=\"card\" data-name=\"{name}\" data-size=\"{size}\">\n\
          <button type=\"button\" class=\"open\" aria-label=\"{name} {size} at full size\">{images}</button>\n\
          <figcaption><span class=\"head\"><b>{name}</b> <span class=\"size\">{size}</span>\
-         <span class=\"time\">{}</span></span><span class=\"figures\">{}</span><span class=\"caption\">{}</span><span class=\"caption\">{}</span></figcaption></figure>",
+         <span class=\"time\">{}</span></span><span class=\"figures\">{}</span><span class=\"caption\">{}</span><span class=\"caption texels\">{}</span></figcaption></figure>",
         row.map(time).unwrap_or_default(),
         row.map(figures).unwrap_or_default(),
         Escaped(caption),
