@@ -64,7 +64,7 @@
 //! | precision | f64 in, f64 inside, narrowed to f32 once, relative to `origin` |
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod aliasing;
+pub mod aliasing;
 mod camera;
 pub mod encoding;
 mod error;

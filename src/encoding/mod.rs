@@ -1,3 +1,4 @@
 //! What a texel stores and how it is read: the Rust twins of the shaders, in f32 as they are.
 
 pub mod depth;
+pub mod footprint;

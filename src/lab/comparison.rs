@@ -6,7 +6,9 @@ use image::ExtendedColorType;
 
 use super::case::{BUILT_IN_SCENES, Case, SceneSource};
 use super::cli::encode_png;
+use super::cpu::Visible;
 use super::experiment::{Backend, RunError, Shot, Studio, stage_names};
+use super::footprint::{COARSENESS, Measured};
 use super::metrics::{Scores, heat_map, mask_from_bytes};
 use super::report::{Picture, Row, SceneSection};
 use super::sparse_city::sparse_city;
@@ -92,6 +94,7 @@ pub fn photograph(
 ) -> Result<SceneSection, String> {
     let (backend_name, adapter) = (backend.name().to_owned(), backend.adapter());
     let setting = Setting::of(case);
+    let visible = Visible::draw(&assignment.subject.model, &setting.camera, setting.origin);
     let mut studio = Studio::new(backend, &assignment.subject, setting).map_err(|error| error.to_string())?;
     let mut section = SceneSection {
         scene: assignment.scene.clone(),
@@ -118,7 +121,8 @@ pub fn photograph(
             match run(&mut studio, remix, size, programme.repetitions, truth) {
                 Ok((shot, scores)) => {
                     shot.fill(&mut row, &scores);
-                    section.pictures.push(picture(&shot, &scores, truth, case, name, size)?);
+                    let measured = Measured::new(&visible, &shot.frame, &setting, &truth.valid);
+                    section.pictures.push(picture(&shot, &scores, truth, case, &measured, &row)?);
                 }
                 Err(error) => row.left_out = vec![error.to_string()],
             }
@@ -146,10 +150,11 @@ fn picture(
     scores: &Scores,
     truth: &Truth,
     case: &Case,
-    technique: &str,
-    size: u32,
+    measured: &Measured,
+    row: &Row,
 ) -> Result<Picture, String> {
     let [width, height] = case.viewport;
+    let coarse = [width, height].map(|side| side.div_ceil(COARSENESS as u32));
     let heat = heat_map(&mask_from_bytes(&shot.mask), truth).map_err(|error| error.to_string())?;
     let mut caption = format!(
         "away from edges: leak {:.3} %, acne {:.3} %",
@@ -160,12 +165,55 @@ fn picture(
         let _ = write!(caption, "; no map");
     }
     Ok(Picture {
-        technique: technique.to_owned(),
-        size,
+        technique: row.technique.clone(),
+        size: row.size,
         png: encode_png(&shot.mask, width, height, ExtendedColorType::L8)?,
         heat_png: encode_png(&heat, width, height, ExtendedColorType::Rgb8)?,
+        footprint_png: if shot.frame.views.is_empty() {
+            Vec::new()
+        } else {
+            encode_png(&measured.paint(width as usize), coarse[0], coarse[1], ExtendedColorType::Rgb8)?
+        },
+        footprint: footprint_line(shot, measured),
         caption,
     })
+}
+
+/// Texels in the picture as they were measured, and beside them what the fit predicted.
+fn footprint_line(shot: &Shot, measured: &Measured) -> String {
+    let (Some(texel), Some(facing)) = (measured.pixels_per_texel, measured.perspective) else {
+        return String::new();
+    };
+    let predicted = shot.frame.predicted;
+    let mut line = format!(
+        "texel {} px ({}–{})\nwithout slant {} px ({}–{})\npredicted {}–{}",
+        digits(texel.median),
+        digits(texel.low),
+        digits(texel.high),
+        digits(facing.median),
+        digits(facing.min),
+        digits(facing.max),
+        digits(predicted.min.into()),
+        digits(predicted.max.into()),
+    );
+    if measured.unserved > LEAST_UNSERVED {
+        let _ = write!(line, "\n{:.1} % outside the map", 100.0 * measured.unserved);
+    }
+    line
+}
+
+/// Share of the valid pixels outside of a map from which on it is said: less is rounding at the map's edge.
+const LEAST_UNSERVED: f64 = 5e-4;
+
+/// A length in pixels with two digits or so.
+fn digits(pixels: f64) -> String {
+    match pixels {
+        pixels if !pixels.is_finite() => "∞".to_owned(),
+        pixels if pixels >= 1e4 => format!("{pixels:.0e}"),
+        pixels if pixels >= 10.0 => format!("{pixels:.0}"),
+        pixels if pixels >= 1.0 => format!("{pixels:.1}"),
+        pixels => format!("{pixels:.2}"),
+    }
 }
 
 /// One sentence about a case.

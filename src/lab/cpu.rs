@@ -42,6 +42,12 @@ impl Visible {
         self.hits.iter().flatten()
     }
 
+    /// What a pixel shows, if anything; pixels are numbered row by row.
+    #[must_use]
+    pub fn pixel(&self, index: usize) -> Option<&Hit> {
+        self.hits.get(index)?.as_ref()
+    }
+
     /// Draws the scene from the camera at the size of its viewport.
     #[must_use]
     pub fn draw(model: &SceneModel, camera: &Camera, origin: DVec3) -> Self {

@@ -7,6 +7,7 @@ pub mod cpu;
 pub mod depth_error;
 pub mod experiment;
 pub mod files;
+pub mod footprint;
 pub mod gltf;
 pub mod gpu;
 pub mod metrics;

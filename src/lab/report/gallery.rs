@@ -1,4 +1,4 @@
-//! Pictures of one scene: the truth and every run side by side, each also as a picture of its error.
+//! Pictures of one scene: the truth and every run side by side, each also as a picture of its error and of its texels.
 
 use std::io::{self, Cursor, Write};
 
@@ -7,6 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::html::Escaped;
 use super::{Cell, Picture, Row, SceneSection};
+use crate::encoding::footprint::ANTUMBRA_FOOTPRINT_OCTAVES;
+use crate::lab::footprint::colour;
 
 /// Writes the truth and the pictures; nothing when there are none.
 pub(super) fn write(sink: &mut impl Write, section: &SceneSection, index: usize, heat_legend: &str) -> io::Result<()> {
@@ -22,6 +24,9 @@ pub(super) fn write(sink: &mut impl Write, section: &SceneSection, index: usize,
     if !heat_legend.is_empty() {
         writeln!(sink, "<p class=\"hint\"><b>Error pictures:</b> {}</p>", Escaped(heat_legend))?;
     }
+    if section.pictures.iter().any(|picture| !picture.footprint_png.is_empty()) {
+        write_scale(sink)?;
+    }
     writeln!(sink, "<div class=\"cards\">")?;
     write_truth(sink, section)?;
     for picture in &section.pictures {
@@ -30,11 +35,33 @@ pub(super) fn write(sink: &mut impl Write, section: &SceneSection, index: usize,
     writeln!(sink, "</div></div>")
 }
 
-/// Writes the choice between masks and error pictures; it works without the script.
+/// Writes what the colours of the texel pictures mean.
+fn write_scale(sink: &mut impl Write) -> io::Result<()> {
+    let octaves = ANTUMBRA_FOOTPRINT_OCTAVES as i32;
+    let stop = |half: i32| {
+        let [r, g, b] = colour(2.0_f64.powf(f64::from(half) / 2.0));
+        format!("rgb({r} {g} {b})")
+    };
+    let stops: Vec<String> = (-2 * octaves..=2 * octaves).map(stop).collect();
+    writeln!(
+        sink,
+        "<div class=\"hint scale\"><p><b>Texel pictures:</b> texels over a pixel, in the direction in which there are \
+         fewest. Grey: sky, and what is turned away from the light.</p>\n\
+         <div class=\"ramp\"><span>blocks</span><div><i style=\"background:linear-gradient(90deg,{})\"></i><ol>",
+        stops.join(",")
+    )?;
+    for octave in (-octaves..=octaves).step_by(2) {
+        let tick = 1_u32 << octave.unsigned_abs();
+        writeln!(sink, "<li>{}</li>", if octave < 0 { format!("1/{tick}") } else { tick.to_string() })?;
+    }
+    writeln!(sink, "</ol></div><span>to spare</span></div></div>")
+}
+
+/// Writes the choice between masks, error and texel pictures; it works without the script.
 fn write_layers(sink: &mut impl Write, index: usize) -> io::Result<()> {
     writeln!(sink, "<fieldset class=\"choice\"><legend>Show</legend>")?;
-    for (value, name) in [("mask", "Shadows"), ("heat", "Error"), ("both", "Both")] {
-        let checked = if value == "mask" { " checked" } else { "" };
+    for (value, name) in [("mask", "Shadows"), ("heat", "Error"), ("footprint", "Texels"), ("all", "All")] {
+        let checked = if value == "all" { " checked" } else { "" };
         writeln!(
             sink,
             "<label><input type=\"radio\" name=\"layer-{index}\" value=\"{value}\"{checked}><span>{name}</span></label>"
@@ -77,26 +104,28 @@ fn write_truth(sink: &mut impl Write, section: &SceneSection) -> io::Result<()> 
         "<figure class=\"card truth\" data-name=\"Truth\" data-size=\"\">\n\
          <button type=\"button\" class=\"open\" aria-label=\"Truth at full size\">{}</button>\n\
          <figcaption><span class=\"head\"><b>Truth</b> <span class=\"size\">ray traced</span></span><span class=\"figures\">{floor}</span></figcaption></figure>",
-        image(&section.truth_png, "truth", &alt)
+        image(&section.truth_png, "truth", &alt, &section.truth_png)
     )
 }
 
 /// Writes the card of one run.
 fn write_card(sink: &mut impl Write, section: &SceneSection, picture: &Picture) -> io::Result<()> {
-    let Picture { technique, size, png, heat_png, caption } = picture;
+    let Picture { technique, size, png, heat_png, footprint_png, footprint, caption } = picture;
     let row = section.rows.iter().find(|row| row.technique == *technique && row.size == *size);
     let place = format!("{}, {}, {technique} with maps of {size} texels", section.scene, section.case);
-    let images =
-        image(png, "mask", &format!("Shadows of {place}")) + &image(heat_png, "heat", &format!("Error of {place}"));
+    let images = image(png, "mask", &format!("Shadows of {place}"), png)
+        + &image(heat_png, "heat", &format!("Error of {place}"), png)
+        + &image(footprint_png, "footprint", &format!("Texels over a pixel of {place}"), png);
     writeln!(
         sink,
         "<figure class=\"card\" data-name=\"{name}\" data-size=\"{size}\">\n\
          <button type=\"button\" class=\"open\" aria-label=\"{name} {size} at full size\">{images}</button>\n\
          <figcaption><span class=\"head\"><b>{name}</b> <span class=\"size\">{size}</span>\
-         <span class=\"time\">{}</span></span><span class=\"figures\">{}</span><span class=\"caption\">{}</span></figcaption></figure>",
+         <span class=\"time\">{}</span></span><span class=\"figures\">{}</span><span class=\"caption\">{}</span><span class=\"caption texels\">{}</span></figcaption></figure>",
         row.map(time).unwrap_or_default(),
         row.map(figures).unwrap_or_default(),
         Escaped(caption),
+        Escaped(footprint),
         name = Escaped(technique),
     )
 }
@@ -112,14 +141,18 @@ fn figures(row: &Row) -> String {
     format!("mae\u{a0}{mae} · wrong\u{a0}{wrong}\u{a0}%")
 }
 
-/// A picture inside the page, decoded when it comes into view; an empty one is said to be missing.
-fn image(png: &[u8], kind: &str, alt: &str) -> String {
+/// A picture inside the page, as large as another one and decoded when it comes into view; an empty one is said to be missing.
+fn image(png: &[u8], kind: &str, alt: &str, like: &[u8]) -> String {
     if png.is_empty() {
-        let what = if kind == "heat" { "error picture" } else { "picture" };
+        let what = match kind {
+            "heat" => "error picture",
+            "footprint" => "texels",
+            _ => "picture",
+        };
         return format!("<span class=\"missing {kind}\">no {what}</span>");
     }
     // The size keeps the page from jumping while pictures appear; a PNG without one shows as what it is, a broken picture.
-    let size = image::ImageReader::with_format(Cursor::new(png), image::ImageFormat::Png).into_dimensions();
+    let size = image::ImageReader::with_format(Cursor::new(like), image::ImageFormat::Png).into_dimensions();
     let size = size.map_or(String::new(), |(width, height)| format!(" width=\"{width}\" height=\"{height}\""));
     format!(
         "<img class=\"{kind}\" src=\"data:image/png;base64,{}\"{size} loading=\"lazy\" decoding=\"async\" alt=\"{}\">",

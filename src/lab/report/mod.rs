@@ -87,6 +87,10 @@ pub struct Picture {
     pub png: Vec<u8>,
     /// PNG of the error against the truth, of the same size; empty when there is none.
     pub heat_png: Vec<u8>,
+    /// PNG of the texels over a pixel, of the same shape and maybe coarser; empty when there is none.
+    pub footprint_png: Vec<u8>,
+    /// What was measured of that, and predicted; may be empty.
+    pub footprint: String,
     /// A line to show under the picture; may be empty.
     pub caption: String,
 }

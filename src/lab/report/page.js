@@ -45,11 +45,11 @@ for (const gallery of document.querySelectorAll("[data-gallery]")) {
 // Paper cannot scroll: pictures that were not looked at yet must be there.
 window.addEventListener("beforeprint", () => document.querySelectorAll("img[loading]").forEach((image) => { image.loading = "eager"; }));
 
-// Full size: one picture at a time; flipping between shadows, truth and error keeps place and zoom.
+// Full size: one picture at a time; flipping between shadows, truth, error and texels keeps place and zoom.
 const box = document.getElementById("lightbox");
 const stage = box.querySelector(".lb-stage");
 const picture = stage.querySelector("img");
-const LAYERS = ["mask", "truth", "heat"];
+const LAYERS = ["mask", "truth", "heat", "footprint"];
 const ZOOMS = [0, 1, 2, 4];
 const state = { cards: [], at: 0, layer: "mask", zoom: 0 };
 
@@ -142,6 +142,7 @@ box.addEventListener("keydown", (event) => {
     1: () => { state.layer = "mask"; render(); },
     2: () => { state.layer = "truth"; render(); },
     3: () => { state.layer = "heat"; render(); },
+    4: () => { state.layer = "footprint"; render(); },
     z: () => zoom(ZOOMS[(ZOOMS.indexOf(state.zoom) + 1) % ZOOMS.length]),
     " ": onButton ? undefined : flip,
   }[event.key.length === 1 ? event.key.toLowerCase() : event.key];

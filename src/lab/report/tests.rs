@@ -35,11 +35,13 @@ fn report() -> Report {
         left_out: vec!["adapter lost <mid-run>".into()],
         ..row("psm", 1024, 0.0)
     };
-    let picture = |technique: &str, heat_png| Picture {
+    let picture = |technique: &str, heat_png: Vec<u8>| Picture {
         technique: technique.into(),
         size: 512,
         png: png(0.4),
+        footprint_png: heat_png.clone(),
         heat_png,
+        footprint: "texel 1 px <wide>".into(),
         caption: "a \"caption\"".into(),
     };
     Report {
@@ -99,10 +101,15 @@ fn the_page_stands_alone() {
     }
     let sources = page.matches(" src=\"").count();
     assert_eq!(sources, page.matches(" src=\"data:image/png;base64,").count());
-    // The truth, two masks and one error picture; the missing one is said to be missing.
-    assert_eq!(sources, 4);
-    assert_eq!(page.matches("loading=\"lazy\"").count(), 4);
-    assert!(page.contains("width=\"16\" height=\"12\"") && page.contains("no error picture"));
+    // The truth, two masks, one error and one texel picture; the missing ones are said to be missing.
+    assert_eq!(sources, 5);
+    assert_eq!(page.matches("loading=\"lazy\"").count(), 5);
+    assert!(
+        page.contains("width=\"16\" height=\"12\"") && page.contains("no error picture") && page.contains("no texels")
+    );
+    assert!(
+        page.contains("linear-gradient(90deg,rgb(") && page.contains("<li>1/16</li>") && page.contains("&lt;wide&gt;")
+    );
 }
 
 #[test]
