@@ -83,24 +83,38 @@ fn differences(view: &ViewUniforms, side: u32, camera: &Camera, position: DVec3,
     let [_, _, forward] = sight.axes;
     let ray = if sight.spreads { sight.from_eye / sight.from_eye.dot(forward) } else { forward };
     let facing = sight.normal.dot(ray).abs();
-    let (size, depth) = match camera.projection {
-        Projection::Perspective { left, right, down, up, .. } => {
-            (DVec2::new(right - left, up - down), sight.from_eye.dot(forward))
-        }
-        Projection::Orthographic { left, right, down, up, .. } => (DVec2::new(right - left, up - down), 1.0),
-    };
+    let (pixel, depth) = (pixel_size(camera), if sight.spreads { sight.from_eye.dot(forward) } else { 1.0 });
     let w = Vec4::from(view.w_from_render).as_dvec4();
     // Neither the cosine nor w may change by more than the share.
     let reach = depth * (1.0 + ray.length() / facing);
     let by_w = w.dot(position.extend(1.0)) / (w.truncate().length() * reach).max(1e-300);
-    let step = STEP * facing.min(by_w).min(size.max_element());
+    let step = STEP * facing.min(by_w).min((pixel * camera.viewport.as_dvec2()).max_element());
     (facing > 1e-6).then(|| {
         [DVec2::X, DVec2::Y].map(|axis| {
             let at = |times: f64| texels(view, side, position, sight.meet(axis * (step * times)));
             let slope = ((at(1.0) - at(-1.0)) * 8.0 - (at(2.0) - at(-2.0))) / (12.0 * step);
-            slope * axis.dot(size / camera.viewport.as_dvec2())
+            slope * axis.dot(pixel)
         })
     })
+}
+
+/// What rounding in f64 does to the gradients of a map, texels per world unit: places in it are differences of numbers that grow with the
+/// distance from the origin.
+fn doubt(view: &ViewUniforms, side: u32, position: DVec3) -> f64 {
+    let [u, v, w] = [view.u_from_render, view.v_from_render, view.w_from_render].map(|row| Vec4::from(row).as_dvec4());
+    let (at, size) = (w.dot(position.extend(1.0)), position.extend(1.0).abs());
+    let of =
+        |row: DVec4| row.truncate().length() + w.truncate().length() * (row.abs().dot(size) + w.abs().dot(size)) / at;
+    8.0 * f64::EPSILON * of(u).max(of(v)) * f64::from(side) / at
+}
+
+/// Size of a pixel: tangents, or world units of an orthographic camera.
+fn pixel_size(camera: &Camera) -> DVec2 {
+    let size = match camera.projection {
+        Projection::Perspective { left, right, down, up, .. }
+        | Projection::Orthographic { left, right, down, up, .. } => DVec2::new(right - left, up - down),
+    };
+    size / camera.viewport.as_dvec2()
 }
 
 /// Least and largest singular value, and the determinant.
@@ -129,7 +143,7 @@ fn footprints_are_what_neighbouring_rays_see() {
     over_hostile_frames();
     let [cases, found, warped, sharp] = REACHED.each_ref().map(|count| count.load(Ordering::Relaxed));
     println!("{cases} cases, {found} with a footprint, {warped} of them warped, {sharp} compared to 1e-6");
-    assert!(found * 5 > cases && warped * 10 > found && sharp * 2 > found, "{cases} {found} {warped} {sharp}");
+    assert!(found * 5 > cases && warped * 10 > found && sharp * 3 > found, "{cases} {found} {warped} {sharp}");
 }
 
 proptest! {
@@ -152,8 +166,9 @@ proptest! {
         if view.w_from_render[..3] != [0.0; 3] {
             count(2);
         }
-        // Both know J to eight digits of its largest entry: far from the origin, places in the map are differences of large numbers.
-        let noise = 1e-8 * most;
+        // Differences know J to nine digits of its largest entry; far from the origin, both know the map less well.
+        let pixel = [DVec2::X, DVec2::Y].map(|axis| sight.meet(axis * 1e-6).length() * 1e6).into_iter().fold(0.0, f64::max);
+        let noise = 1e-9 * most + doubt(view, inputs.side, position) * pixel * pixel_size(&inputs.camera).max_element();
         if noise < 1e-6 * least {
             count(3);
             let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
@@ -177,7 +192,7 @@ fn predicted_extremes_hold() {
     predicted_extremes_hold_over_hostile_frames();
     let [points, above, below] = PREDICTED.each_ref().map(|count| count.load(Ordering::Relaxed));
     println!("{points} points; warped maps: at most {above} millionths above the prediction, {below} % below it");
-    assert!(points > 1_000);
+    assert!(points > 10_000);
 }
 
 proptest! {
@@ -187,18 +202,22 @@ proptest! {
         // What nothing can shadow is not in the body: here everything casts.
         let inputs = Inputs { casters: inputs.receivers, ..inputs };
         let Some(frame) = fit(&inputs, &remix) else { return Ok(()) };
-        let point = view_point(&inputs.camera, shares);
-        let is_inside = point.cmpge(inputs.receivers.min).all() && point.cmple(inputs.receivers.max).all();
-        if !is_inside || !in_view(&inputs, point) {
+        let point = view_point(&inputs.camera, shares).clamp(inputs.receivers.min, inputs.receivers.max);
+        if !in_view(&inputs, point) {
             return Ok(());
         }
         let view = &frame.uniforms.views[0];
         let Some(found) = perspective_at(view, inputs.side, &inputs.camera, inputs.origin, point - inputs.origin) else { return Ok(()) };
+        // Where a body is a speck far from the origin, w is as good as positions in f32, and not as predicted.
+        let (w, at) = (Vec4::from(view.w_from_render).as_dvec4(), point - inputs.origin);
+        if w.truncate().length() * at.length() * f64::from(f32::EPSILON) > 1e-3 * w.dot(at.extend(1.0)) {
+            return Ok(());
+        }
         let (least, most) = (f64::from(frame.predicted.min), f64::from(frame.predicted.max));
         PREDICTED[0].fetch_add(1, Ordering::Relaxed);
         let warped = view.w_from_render[..3] != [0.0; 3];
         // Rows are rounded to f32.
-        let (below, above) = if warped { (0.0, std::f64::consts::SQRT_2 * 1.001) } else { (0.9999, 1.0001) };
+        let (below, above) = if warped { (0.0, std::f64::consts::SQRT_2 * 1.05) } else { (0.9999, 1.0001) };
         if warped && most > 0.0 {
             PREDICTED[1].fetch_max(((found / most - 1.0).max(0.0) * 1e6) as u32, Ordering::Relaxed);
             PREDICTED[2].fetch_max(((1.0 - found / least).max(0.0) * 1e2) as u32, Ordering::Relaxed);
