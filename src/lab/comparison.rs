@@ -78,6 +78,17 @@ pub struct Programme {
     pub repetitions: u32,
 }
 
+/// Most pictures of a case: a page of all techniques at all sizes would weigh some 60 MB. Fewer show less; more load slowly.
+const MOST_PICTURES: usize = 10;
+
+impl Programme {
+    /// Whether maps of this size are shown as pictures: all sizes where these are few, else the middle one. Tables and plots have them all.
+    fn pictures(&self, size: u32) -> bool {
+        let few = self.techniques.len() * self.sizes.len() <= MOST_PICTURES;
+        few || self.sizes.get(self.sizes.len() / 2) == Some(&size)
+    }
+}
+
 /// Photographs one case with every technique and size; `on_run` is called after each run.
 ///
 /// A run that fails is a row too, with its error; nothing is dropped.
@@ -121,8 +132,10 @@ pub fn photograph(
             match run(&mut studio, remix, size, programme.repetitions, truth) {
                 Ok((shot, scores)) => {
                     shot.fill(&mut row, &scores);
-                    let measured = Measured::new(&visible, &shot.frame, &setting, &truth.valid);
-                    section.pictures.push(picture(&shot, &scores, truth, case, &measured, &row)?);
+                    if programme.pictures(size) {
+                        let measured = Measured::new(&visible, &shot.frame, &setting, &truth.valid);
+                        section.pictures.push(picture(&shot, &scores, truth, case, &measured, &row)?);
+                    }
                 }
                 Err(error) => row.left_out = vec![error.to_string()],
             }

@@ -12,6 +12,9 @@ use glam::DVec2;
 /// edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis wanders.
 const SOFTNESS: f64 = 0.03;
 
+/// Logarithm of the least vote that counts: e^−40 is less than a rounding of f64. Nearer to 0 edges would come and go with a jump.
+const LEAST_VOTE: f64 = -40.0;
+
 /// Axis (unit) of a rectangle around `points` that is nearly the smallest, and turns continuously with them; `None` when they have no area.
 ///
 /// Every edge of the hull votes for its direction, by its length and by how small its rectangle is. Rectangles repeat every quarter turn, so that
@@ -36,11 +39,16 @@ pub(crate) fn steady_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>)
     // Their mean direction, four times around.
     let mut sum = DVec2::ZERO;
     for (edge, area) in edges {
+        // Votes that are lost in rounding need not be counted.
+        let vote = (1.0 - area / least) / SOFTNESS;
+        if vote < LEAST_VOTE {
+            continue;
+        }
         // Edges may be so short that their squares underflow.
         let size = edge.abs().max_element();
         let (along, length) = (edge / size).normalize_and_length();
         let twice = along.rotate(along);
-        sum += twice.rotate(twice) * (size * length * (-(area / least - 1.0) / SOFTNESS).exp());
+        sum += twice.rotate(twice) * (size * length * vote.exp());
     }
     let axis = DVec2::from_angle(0.25 * sum.to_angle());
     axis.is_finite().then_some(axis)
