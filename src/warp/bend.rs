@@ -51,6 +51,9 @@ impl Bend {
 
     /// Where a point (W > 0) goes; itself, bit by bit, without a warp.
     pub(crate) fn bent(&self, at: DVec2) -> DVec2 {
+        if self.is_none() {
+            return at;
+        }
         let w = self.w(at);
         (at + self.anchor * (w - 1.0)) / w
     }
@@ -64,6 +67,9 @@ impl Bend {
 
     /// How far a box of half size `margin` around a point reaches once it is bent, to first order in each axis, and what f64 loses of it.
     pub(crate) fn reach(&self, at: DVec2, margin: f64) -> DVec2 {
+        if self.is_none() {
+            return DVec2::splat(margin);
+        }
         let w = self.w(at);
         let bent = (at - self.anchor) / w;
         // A body far beside its centre line is bent by far more than its size.
