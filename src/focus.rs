@@ -38,8 +38,9 @@ impl FocusBody {
         nothing_in(scene)?;
         let receivers = grown(&scene.receivers, origin, 0.0);
         let depth = DepthRange { near: f64::NEG_INFINITY, far: f64::INFINITY };
-        let body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
-        body.shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)
+        let mut body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
+        body.take_shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)?;
+        Ok(body)
     }
 
     /// The receivers in view: frustum ∩ receivers' bounds ∩ the shadow of the casters' bounds.
@@ -47,36 +48,37 @@ impl FocusBody {
         nothing_in(scene)?;
         // The frustum, between the depths that are visible.
         let DepthRange { near, far } = visible_depth(camera, scene)?;
-        let mut body = Convex::hexahedron(camera.corners(near, far, origin));
+        let mut convex = Convex::hexahedron(camera.corners(near, far, origin));
         // Of it, what the receivers' bounds hold.
         let reach = (camera.eye() - origin).abs().max_element();
         let walls = box_planes(&grown(&scene.receivers, origin, reach));
         for plane in walls {
-            body.clip(plane);
+            convex.clip(plane);
         }
-        if body.is_empty() {
+        if convex.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NoReceiversInView { near, far } });
         }
         // Of that, what something can shadow.
         let depth = DepthRange { near, far };
-        let cut =
-            Self { vertices: ArrayVec::new(), walls: walls.into_iter().collect(), depth, left_out: ArrayVec::new() };
-        let mut body = cut.shadowed(body, scene, travel, origin, reach)?;
+        let mut body =
+            Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
+        let _ = body.walls.try_extend_from_slice(&walls); // never full: MAX_WALLS
+        body.take_shadowed(convex, scene, travel, origin, reach)?;
         if (DepthRange { near, far }) != camera_depth(camera) {
             let _ = body.left_out.try_push(LeftOut { part: Part::Frustum, why: Why::NotVisible { near, far } });
         }
         Ok(body)
     }
 
-    /// Of a body, what the shadow of the casters' bounds reaches.
-    fn shadowed(
-        mut self,
+    /// Takes what the shadow of the casters' bounds reaches of a body.
+    fn take_shadowed(
+        &mut self,
         mut body: Convex,
         scene: &Scene,
         travel: DVec3,
         origin: DVec3,
         reach: f64,
-    ) -> Result<Self, LeftOut> {
+    ) -> Result<(), LeftOut> {
         let (casters, receivers) = (&scene.casters, &scene.receivers);
         // Receivers among the casters are all in their shadow.
         let among = casters.min.cmple(receivers.min).all() && casters.max.cmpge(receivers.max).all();
@@ -90,11 +92,11 @@ impl FocusBody {
                 self.left_out.push(LeftOut { part: Part::Receivers(0), why: Why::LitWithoutLookup });
             }
         }
-        self.vertices = body.points().collect();
+        self.vertices.extend(body.points());
         if self.vertices.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NothingCastsHere });
         }
-        Ok(self)
+        Ok(())
     }
 }
 

@@ -110,7 +110,7 @@ impl ShadowTechnique for Remix {
             Warp::Uniform => FocusBody::of_scene(&input.scene, travel, input.origin),
             _ => FocusBody::of_view(&input.camera, &input.scene, travel, input.origin),
         };
-        let body = match body {
+        let mut body = match body {
             Ok(body) => body,
             Err(LeftOut { part, why }) => {
                 frame.leave_out(part, why);
@@ -122,14 +122,14 @@ impl ShadowTechnique for Remix {
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
         let fitter = Fitter { input: &input, travel, texels, bias: self.bias };
         let layout = match (self.stabilise, self.warp) {
-            (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
-            (Stabilise::Off, Warp::Focused) => fitter.focused(body, &mut frame),
-            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, &mut frame),
-            (Stabilise::Off, warp) => fitter.warped(body, warp, self.guard, &mut frame),
-            (Stabilise::SnapTexels, _) => fitter.snapped(body, &mut frame),
+            (Stabilise::Off, Warp::Uniform) => fitter.tight(&body),
+            (Stabilise::Off, Warp::Focused) => fitter.focused(&mut body, &mut frame),
+            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(&body, Why::AlreadyStill, &mut frame),
+            (Stabilise::Off, warp) => fitter.warped(&body, warp, self.guard, &mut frame),
+            (Stabilise::SnapTexels, _) => fitter.snapped(&mut body, &mut frame),
         };
         // Draw the conclusions: view and uniforms.
-        fitter.view(&layout, &mut frame);
+        fitter.view(&body, &layout, &mut frame);
         Ok(frame)
     }
 }

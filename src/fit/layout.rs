@@ -1,6 +1,6 @@
 //! Where the window of a map is laid: around the body, around the whole scene, on a grid, or bent.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::fit::depth_range::{rounding, rounding_margin};
 use crate::fit::snap;
@@ -34,10 +34,8 @@ const MOST_ROUNDING: f64 = 0.125;
 /// 0 warps would be given up because something stands far away.
 const MOST_ROUNDING_OF_CASTERS: f64 = 0.5;
 
-/// A body, and the window that is laid around it.
+/// The window that is laid around a body.
 pub(crate) struct Layout {
-    /// What has to be in the map.
-    pub(crate) body: FocusBody,
     /// The map's extent across the light.
     pub(crate) window: Window,
     /// κλ of its warp; 0 for uniform maps.
@@ -47,22 +45,22 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    fn uniform(body: FocusBody, window: Window) -> Self {
-        Self { body, strength: 0.0, error: window.size().element_sum(), window }
+    fn uniform(window: Window) -> Self {
+        Self { strength: 0.0, error: window.size().element_sum(), window }
     }
 }
 
 impl Fitter<'_> {
     /// The window of nearly least area around a body.
-    pub(crate) fn tight(&self, body: FocusBody) -> Layout {
+    pub(crate) fn tight(&self, body: &FocusBody) -> Layout {
         let margin = rounding_margin(&body.vertices, self.input.origin);
         let window = Window::steady(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin);
-        Layout::uniform(body, window)
+        Layout::uniform(window)
     }
 
     /// The window of nearly least area around what is in view; around the whole scene where that has hardly larger texels, because
-    /// a map that does not follow the camera need not be drawn anew.
-    pub(crate) fn focused(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+    /// a map that does not follow the camera need not be drawn anew. The body is what the window is around.
+    pub(crate) fn focused(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let tight = self.tight(body);
         let window = &tight.window;
         // Most windows are far smaller than the bounds as the light sees them: no need to fit the scene.
@@ -73,24 +71,26 @@ impl Fitter<'_> {
             return tight;
         }
         let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else { return tight };
-        let still = self.tight(whole);
+        let still = self.tight(&whole);
         let share = (window.area() / still.window.area()).min(1.0);
         if share <= WORTH_FOCUSING {
             return tight;
         }
         frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
+        *body = whole;
         still
     }
 
     /// The window of the whole scene, which does not move with the camera.
-    pub(crate) fn still(&self, whole: FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
+    pub(crate) fn still(&self, whole: &FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
         frame.leave_out(Part::Stabilise(0), why);
-        let window = snap::still(&self.around(&whole), self.texels.over_window(), self.input.origin);
-        Layout::uniform(whole, window)
+        let window = snap::still(&self.around(whole), self.texels.over_window(), self.input.origin);
+        Layout::uniform(window)
     }
 
-    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller.
-    pub(crate) fn snapped(&self, body: FocusBody, frame: &mut ShadowFrame) -> Layout {
+    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller. The body is what the
+    /// window is around.
+    pub(crate) fn snapped(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let (camera, scene) = (&self.input.camera, &self.input.scene);
         let (_, far) = camera.projection.depth_range();
         let far = scene.visible_depth.map_or(far, |visible| far.min(visible.far));
@@ -98,28 +98,31 @@ impl Fitter<'_> {
             return self.still(body, Why::AlreadyStill, frame);
         };
         match snap::snapped(camera, far, &self.around(&whole), self.texels.over_window(), self.input.origin) {
-            Ok(window) => Layout::uniform(body, window),
-            Err(why) => self.still(whole, why, frame),
+            Ok(window) => Layout::uniform(window),
+            Err(why) => {
+                *body = whole;
+                self.still(body, why, frame)
+            }
         }
     }
 
     /// The window around what is in view, bent by what a warp chooses; a guard limits it to what is predicted to be no worse than
     /// uniform.
-    pub(crate) fn warped(&self, body: FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
+    pub(crate) fn warped(&self, body: &FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
         let (camera, origin) = (&self.input.camera, self.input.origin);
         let margin = rounding_margin(&body.vertices, origin);
         // Choose an axis and a strength.
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
-        let margin_of_casters = self.margin_of_casters(&body);
+        let margin_of_casters = self.margin_of_casters(body);
         let limit = |around: &WarpFrame| self.strongest(around, &sight, margin, margin_of_casters);
-        let seen = Seen::of(camera, &body, &sight, self.input.scene.visible_points, origin);
+        let seen = Seen::of(camera, body, &sight, self.input.scene.visible_points, origin);
         let choice = match warp {
-            Warp::Uniform | Warp::Focused => Choice { frame: sight.frame(), strength: 0.0 },
+            Warp::Uniform | Warp::Focused => Choice { frame: sight.frame, strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame_along(sight.view), strength: f64::from(strength) },
             Warp::Trapezoidal { focus } => trapezoid::choose(camera, &sight, focus),
             Warp::LightSpacePerspective => lispsm::choose(&sight),
             Warp::Perspective { pull_back } => perspective::choose(camera, &sight, f64::from(pull_back)),
-            Warp::Minimax => minimax::choose(&sight, limit(&sight.frame())),
+            Warp::Minimax => minimax::choose(&sight, limit(&sight.frame)),
             Warp::LeastError => {
                 let frame = sight.frame_along(seen.axis(&sight));
                 Choice { frame, strength: Predictor::along(&frame, &seen, &sight).least(limit(&frame)) }
@@ -146,7 +149,7 @@ impl Fitter<'_> {
         };
         // Against the uniform map of the same axis: windows are laid where they are smallest, whatever the axis.
         let error = uniform_error(&sight) * (predictor.error(strength) / predictor.error(0.0));
-        Layout { body, window, strength, error }
+        Layout { window, strength, error }
     }
 
     /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain by these margins.
@@ -157,7 +160,8 @@ impl Fitter<'_> {
         let by_receivers = MOST_ROUNDING * (extent / margin - 1.0).max(0.0);
         let by_casters = MOST_ROUNDING_OF_CASTERS * extent / margin_of_casters;
         // f64 bends a point by the distance from the anchor times what W loses, which grows with that distance as well.
-        let reach = sight.points.iter().fold(around.top.length(), |reach, point| reach.max(point.length()));
+        let furthest = |reach: f64, point: &DVec2| reach.max(point.length_squared());
+        let reach = sight.points.iter().fold(around.top.length_squared(), furthest).sqrt();
         let by_distance = MOST_ROUNDING / (ROUNDINGS * f64::EPSILON) * (extent / (2.0 * reach)).powi(2);
         STRONGEST.min(by_border).min(by_receivers).min(by_casters).min(by_distance)
     }

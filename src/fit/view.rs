@@ -7,6 +7,7 @@ use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding_margin};
 use crate::fit::layout::Layout;
+use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
 use crate::math::space::{Clip, Map, Render};
 use crate::report::{Part, Why};
@@ -60,7 +61,8 @@ impl Texels {
 
 impl Fitter<'_> {
     /// From a window to a view and its uniforms, appended to the frame.
-    pub(crate) fn view(&self, &Layout { ref body, ref window, strength, error }: &Layout, frame: &mut ShadowFrame) {
+    pub(crate) fn view(&self, body: &FocusBody, layout: &Layout, frame: &mut ShadowFrame) {
+        let &Layout { ref window, strength, error } = layout;
         let (input, texels) = (self.input, &self.texels);
         let margin = rounding_margin(&body.vertices, self.input.origin);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
@@ -201,9 +203,9 @@ mod tests {
     /// Largest distance, in texels, between where f32 and f64 put positions in view, for a warp of any strength.
     fn lost(input: &FitInput, strength: f64) -> f64 {
         let texels = Texels::of(SIDE, Pcf::default());
-        let body = crate::focus::FocusBody::of_view(&input.camera, &input.scene, TRAVEL, input.origin).unwrap();
+        let body = FocusBody::of_view(&input.camera, &input.scene, TRAVEL, input.origin).unwrap();
         let sight = Sight::of(&input.camera, TRAVEL, &body.vertices, input.origin);
-        let frame = sight.frame();
+        let frame = sight.frame;
         let bend = Bend::new(&frame, strength / frame.extent);
         let margin = rounding_margin(&body.vertices, input.origin);
         let window = Window::turned(sight.light, bend, frame.axis, &body.vertices, margin);

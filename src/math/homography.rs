@@ -268,7 +268,7 @@ fn range(hull: &[DVec2], quantity: impl Fn(DVec2) -> f64) -> (f64, f64) {
 
 /// Largest distance of a usable point from the origin of coordinates.
 fn reach(hull: &[DVec2]) -> f64 {
-    range(hull, DVec2::length).1
+    range(hull, DVec2::length_squared).1.sqrt()
 }
 
 /// Centre of the box around the usable points.

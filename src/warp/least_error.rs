@@ -27,15 +27,12 @@ use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 
 use super::search::{least, not_worse};
+use super::sheaf::Sheaf;
 use super::sight::Sight;
 use crate::camera::Camera;
-use crate::focus::{FocusBody, MAX_WALLS};
+use crate::focus::FocusBody;
 use crate::math::convex::MAX_VERTICES;
 use crate::math::homography::WarpFrame;
-
-/// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen strength by a
-/// hundredth and cost microseconds; half as many make it jump where a ray leaves the body.
-const RAYS: [u32; 2] = [6, 4];
 
 /// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
 /// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.
@@ -44,6 +41,12 @@ const ENOUGH_SAMPLES: f64 = 8.0;
 /// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per cent, strengths too strong
 /// by half cost twice that. Measured: 0.2 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
 const RELUCTANCE: f64 = 0.2;
+
+/// Points whose side lines are looked at together: processors divide two or four numbers at a time.
+const LANES: usize = 2;
+
+/// Groups of as many points.
+const GROUPS: usize = MAX_VERTICES.div_ceil(LANES);
 
 /// What is seen, across the light: means and mean products of (p, q), relative to the eye.
 #[derive(Clone, Copy, Debug)]
@@ -59,21 +62,19 @@ impl Seen {
         let across = |vector: DVec3| sight.light.ray(vector).truncate() - sight.eye;
         // Anywhere in the body: (2), along rays.
         let (mut length, mut sum, mut products) = (0.0, DVec2::ZERO, DVec3::ZERO);
-        let sheaf = Sheaf::over(camera, body, origin);
-        for index in 0..RAYS[0] * RAYS[1] {
-            let (start, direction) = sheaf.ray(index);
-            let Some([near, far]) = sheaf.span(start, direction) else { continue };
-            let (from, to) = (across(start + direction * near), across(start + direction * far));
-            length += far - near;
-            sum += (from + to) * (0.5 * (far - near));
-            products += mean_products(from, to) * (far - near);
+        let sheaf = Sheaf::through(body, camera, origin);
+        for ([from, to], span) in sheaf.spans(|vector| sight.light.ray(vector).truncate()) {
+            length += span;
+            sum += (from + to) * (0.5 * span);
+            products += mean_products(from, to) * span;
         }
         let anywhere = Self { mean: sum / length, products: products / length };
         // Where surfaces are seen.
         let (mut count, mut sum, mut products) = (0.0, DVec2::ZERO, DVec3::ZERO);
+        let [low, high] = if samples.is_empty() { [DVec2::ZERO; 2] } else { sight.bounds() };
         for sample in samples {
             let at = across(*sample - origin);
-            if at.cmpge(sight.low).all() && at.cmple(sight.high).all() {
+            if at.cmpge(low).all() && at.cmple(high).all() {
                 count += 1.0;
                 sum += at;
                 products += mean_products(at, at);
@@ -96,7 +97,7 @@ impl Seen {
     /// The direction in which W has to grow to be small where things are seen: from their mean to the middle of the body. Not
     /// normalised; it vanishes where no direction is better than another, and there a warp along it does no good.
     pub(crate) fn axis(&self, sight: &Sight) -> DVec2 {
-        sight.middle - (self.mean + sight.eye)
+        sight.middle() - (self.mean + sight.eye)
     }
 }
 
@@ -109,8 +110,8 @@ fn mean_products(from: DVec2, to: DVec2) -> DVec3 {
 /// The moments of what is seen along a warp's axis, and what an evaluation of the error needs besides.
 #[derive(Clone, Debug)]
 pub(crate) struct Predictor {
-    /// (u, c) of the body's vertices.
-    points: ArrayVec<DVec2, MAX_VERTICES>,
+    /// u and c of the body's vertices, [`LANES`] at a time; the last ones repeat one.
+    points: ArrayVec<[[f64; LANES]; 2], GROUPS>,
     /// λ.
     extent: f64,
     /// Means of (u/λ)^i, i = 1, 2.
@@ -120,7 +121,12 @@ pub(crate) struct Predictor {
 impl Predictor {
     /// Along the axis of `frame`.
     pub(crate) fn along(frame: &WarpFrame, seen: &Seen, sight: &Sight) -> Self {
-        let points = sight.points.iter().map(|point| frame.coordinates(*point)).collect();
+        let points = sight.points.chunks(LANES).map(|group| {
+            let at = |lane: usize| frame.coordinates(group[lane.min(group.len() - 1)]);
+            // Points before the top line are there by rounding.
+            [core::array::from_fn(|lane| at(lane).x.max(0.0)), core::array::from_fn(|lane| at(lane).y)]
+        });
+        let points = points.collect();
         // u = axis · (x − eye) + shift.
         let (axis, shift) = (frame.axis, frame.axis.dot(sight.eye - frame.top));
         let mean = axis.dot(seen.mean);
@@ -138,14 +144,23 @@ impl Predictor {
         let [first, second] = self.moments;
         let w = 1.0 + strength * first;
         let w_squared = 1.0 + strength * (2.0 * first + strength * second);
-        let (mut a0, mut a1) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in &self.points {
-            let slope = point.y / (1.0 + kappa * point.x.max(0.0));
-            (a0, a1) = (a0.min(slope), a1.max(slope));
-        }
+        let [a0, a1] = self.sides(kappa);
         let slant = (1.0 + kappa * kappa * (a0 * a0 + a0 * a1 + a1 * a1) / 3.0).sqrt();
         let k = 1.0 + strength;
         ((a1 - a0) * w + self.extent / k * slant * w_squared) * (1.0 + RELUCTANCE * strength / k)
+    }
+
+    /// Side lines: the least and greatest c/W.
+    fn sides(&self, kappa: f64) -> [f64; 2] {
+        let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for [along, across] in &self.points {
+            for lane in 0..LANES {
+                let slope = across[lane] / (1.0 + kappa * along[lane]);
+                low[lane] = if slope < low[lane] { slope } else { low[lane] };
+                high[lane] = if slope > high[lane] { slope } else { high[lane] };
+            }
+        }
+        [low.into_iter().fold(f64::INFINITY, f64::min), high.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     }
 
     /// The strength of the least error, at most κλ = `limit`.
@@ -161,62 +176,7 @@ impl Predictor {
 
 /// E without a warp, by the view's axis: the scale on which all methods are measured, whatever axis they bend along.
 pub(crate) fn uniform_error(sight: &Sight) -> f64 {
-    let frame = sight.frame();
+    let frame = sight.frame;
     let [a0, a1] = frame.sides(0.0, &sight.points);
     a1 - a0 + frame.extent
-}
-
-/// Rays over the part of the picture that the body covers: positions at eye depth ζ are start + direction · ζ.
-struct Sheaf<'a> {
-    camera: &'a Camera,
-    body: &'a FocusBody,
-    origin: DVec3,
-    low: DVec2,
-    high: DVec2,
-    /// For rays that share their start, its distance to every wall.
-    from_eye: Option<ArrayVec<f64, MAX_WALLS>>,
-}
-
-impl<'a> Sheaf<'a> {
-    fn over(camera: &'a Camera, body: &'a FocusBody, origin: DVec3) -> Self {
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for vertex in &body.vertices {
-            let at = camera.picture_position(*vertex, origin);
-            low = low.min(at);
-            high = high.max(at);
-        }
-        let eye = camera.eye() - origin;
-        let from_eye = camera
-            .projection
-            .spreads()
-            .then(|| body.walls.iter().map(|wall| wall.truncate().dot(eye) + wall.w).collect());
-        Self { camera, body, origin, low, high, from_eye }
-    }
-
-    fn ray(&self, index: u32) -> (DVec3, DVec3) {
-        let [columns, rows] = RAYS;
-        let cell = DVec2::new(f64::from(index % columns) + 0.5, f64::from(index / columns) + 0.5);
-        let share = cell / DVec2::new(f64::from(columns), f64::from(rows));
-        self.camera.ray(self.low + (self.high - self.low) * share, self.origin)
-    }
-
-    /// The eye depths between which a ray is inside the body.
-    fn span(&self, start: DVec3, direction: DVec3) -> Option<[f64; 2]> {
-        let (mut near, mut far) = (self.body.depth.near, self.body.depth.far);
-        for (index, wall) in self.body.walls.iter().enumerate() {
-            let at_start = match &self.from_eye {
-                Some(distances) => distances[index],
-                None => wall.truncate().dot(start) + wall.w,
-            };
-            let per_depth = wall.truncate().dot(direction);
-            if per_depth > 0.0 {
-                near = near.max(-at_start / per_depth);
-            } else if per_depth < 0.0 {
-                far = far.min(-at_start / per_depth);
-            } else if at_start < 0.0 {
-                return None;
-            }
-        }
-        (near < far).then_some([near, far])
-    }
 }

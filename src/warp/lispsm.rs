@@ -19,7 +19,7 @@ use crate::math::homography::n_opt_eye_range;
 
 /// The published warp. The far depth that is asked for (`scene.visible_depth`) shortens Δz, and nothing else.
 pub(crate) fn choose(sight: &Sight) -> Choice {
-    let frame = sight.frame();
+    let frame = sight.frame;
     let (near, far) = sight.depth_range();
     let n = n_opt_eye_range(near, far - near, sight.view.length());
     Choice { frame, strength: frame.extent / n }

@@ -18,7 +18,7 @@ use crate::math::homography::WarpFrame;
 
 /// The strength of least worst footprint, at most κλ = `limit`.
 pub(crate) fn choose(sight: &Sight, limit: f64) -> Choice {
-    let frame = sight.frame();
+    let frame = sight.frame;
     let strength = least(limit, |strength| worst(sight, &frame, strength));
     Choice { frame, strength }
 }

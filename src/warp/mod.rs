@@ -7,6 +7,7 @@ pub(crate) mod lispsm;
 pub(crate) mod minimax;
 pub mod perspective;
 pub(crate) mod search;
+pub(crate) mod sheaf;
 pub(crate) mod sight;
 pub mod trapezoid;
 pub(crate) mod window;

@@ -59,7 +59,7 @@ const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 0.5);
 /// The published warp of what is in view, the eye pulled back by `pull_back` world units (not negative). Uniform for orthographic
 /// cameras, whose post-perspective space is affine.
 pub(crate) fn choose(camera: &Camera, sight: &Sight, pull_back: f64) -> Choice {
-    let uniform = Choice { frame: sight.frame(), strength: 0.0 };
+    let uniform = Choice { frame: sight.frame, strength: 0.0 };
     let Projection::Perspective { left, right, down, up, .. } = camera.projection else { return uniform };
     // The frustum between the depths of the body, from the pulled-back eye, wide enough for the old one.
     let (nearest, farthest) = sight.depth_range();

@@ -29,17 +29,15 @@ pub(crate) struct Sight {
     pub(crate) points: ArrayVec<DVec2, MAX_VERTICES>,
     /// Their eye depths, within the camera's range.
     pub(crate) depths: ArrayVec<f64, MAX_VERTICES>,
-    /// Bounds of the points, relative to `eye`.
-    pub(crate) low: DVec2,
-    pub(crate) high: DVec2,
-    /// A point in the middle of their hull that moves continuously with them.
-    pub(crate) middle: DVec2,
     /// (p, q) of the eye.
     pub(crate) eye: DVec2,
     /// Width or height of a pixel at each of them, whichever is less, world units.
     pub(crate) pixel_sizes: ArrayVec<f64, MAX_VERTICES>,
     /// The view direction in (p, q): its length is the sine of the angle between light and view.
     pub(crate) view: DVec2,
+    /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest. The centre line passes through
+    /// the eye, as in the papers.
+    pub(crate) frame: WarpFrame,
     /// Sine of the angle from the view axis to the picture's widest side, at least [`LEAST_SINE`].
     pub(crate) half_angle_sine: f64,
     /// The picture's axes to the right and up in (p, q).
@@ -60,19 +58,15 @@ impl Sight {
         let pixel_size = |depth: &f64| per_depth * if camera.projection.spreads() { *depth } else { 1.0 };
         let eye = across(camera.eye() - origin);
         let points: ArrayVec<DVec2, MAX_VERTICES> = vertices().map(|vertex| across(*vertex)).collect();
-        let bounds = |least: DVec2, fold: fn(DVec2, DVec2) -> DVec2| {
-            points.iter().fold(least, |bound, point| fold(bound, *point - eye))
-        };
+        let view = across(camera.forward());
         Self {
             light,
-            low: bounds(DVec2::INFINITY, DVec2::min),
-            high: bounds(DVec2::NEG_INFINITY, DVec2::max),
-            middle: middle(&points, eye),
+            frame: WarpFrame::around(view, eye, &points),
             points,
             pixel_sizes: depths.iter().map(pixel_size).collect(),
             depths,
             eye,
-            view: across(camera.forward()),
+            view,
             half_angle_sine: camera.projection.half_angle_sine().max(LEAST_SINE),
             right: across(camera.world_from_view.x_axis.truncate()),
             up: across(camera.world_from_view.y_axis.truncate()),
@@ -81,14 +75,19 @@ impl Sight {
 
     /// The frame of a warp along any direction, its centre line through the middle of the body.
     pub(crate) fn frame_along(&self, axis: DVec2) -> WarpFrame {
-        WarpFrame::around(axis, self.middle, &self.points)
+        WarpFrame::around(axis, self.middle(), &self.points)
     }
 
-    /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest.
-    ///
-    /// The centre line passes through the eye, as in the papers.
-    pub(crate) fn frame(&self) -> WarpFrame {
-        WarpFrame::around(self.view, self.eye, &self.points)
+    /// A point in the middle of the hull of the points that moves continuously with them.
+    pub(crate) fn middle(&self) -> DVec2 {
+        middle(&self.points, self.eye)
+    }
+
+    /// Least and greatest of the points, relative to the eye.
+    pub(crate) fn bounds(&self) -> [DVec2; 2] {
+        let empty = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        let grown = |[low, high]: [DVec2; 2], at: DVec2| [low.min(at), high.max(at)];
+        self.points.iter().fold(empty, |bounds, point| grown(bounds, *point - self.eye))
     }
 
     /// How well the view has a direction across the light, 0 (view along the light) to 1 (the light is outside of the picture): smooth,
