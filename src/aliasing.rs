@@ -222,14 +222,14 @@ pub(crate) struct Extremes {
     pub(crate) domain: [f32; 2],
 }
 
-/// The extremes over the vertices of a body; `sides` gives the sides of a texel at a vertex, world units across the light.
+/// The extremes over the vertices of a body; `squares` gives the squares of a texel's sides at a vertex, world units across the light.
 ///
 /// Exact for surfaces that face both the light and the camera. O(vertices).
 pub(crate) fn extremes(
     camera: &Camera,
     vertices: &[DVec3],
     origin: DVec3,
-    sides: impl Fn(DVec3) -> [f64; 2],
+    squares: impl Fn(DVec3) -> [f64; 2],
 ) -> Extremes {
     let (near, far) = camera.projection.depth_range();
     let pixels_per_unit = camera.pixels_per_unit();
@@ -238,16 +238,17 @@ pub(crate) fn extremes(
     let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
     for vertex in vertices {
         let depth = camera.eye_depth(*vertex, origin).clamp(near, far);
-        let [one, other] = sides(*vertex);
+        let [one, other] = squares(*vertex);
         let (short, long) = (one.min(other), one.max(other));
-        let pixels = long * pixels_per_unit / if camera.projection.spreads() { depth } else { 1.0 };
+        let per_unit = pixels_per_unit / if camera.projection.spreads() { depth } else { 1.0 };
+        let pixels = long * per_unit * per_unit;
         (nearest, farthest) = (nearest.min(depth), farthest.max(depth));
         (shortest, longest) = (shortest.min(short), longest.max(long));
         (least, most) = (least.min(pixels), most.max(pixels));
     }
     Extremes {
-        pixels: Footprint { min: narrowed(least), max: narrowed(most), error: 0.0 },
-        world: [narrowed(shortest), narrowed(longest)],
+        pixels: Footprint { min: narrowed(least.sqrt()), max: narrowed(most.sqrt()), error: 0.0 },
+        world: [narrowed(shortest.sqrt()), narrowed(longest.sqrt())],
         domain: [nearest as f32, farthest as f32],
     }
 }

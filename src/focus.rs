@@ -60,8 +60,7 @@ impl FocusBody {
         }
         // Of that, what something can shadow.
         let depth = DepthRange { near, far };
-        let mut body =
-            Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
+        let mut body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
         let _ = body.walls.try_extend_from_slice(&walls); // never full: MAX_WALLS
         body.take_shadowed(convex, scene, travel, origin, reach)?;
         if (DepthRange { near, far }) != camera_depth(camera) {

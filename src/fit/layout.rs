@@ -63,11 +63,11 @@ impl Fitter<'_> {
     pub(crate) fn focused(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let tight = self.tight(body);
         let window = &tight.window;
-        // Most windows are far smaller than the bounds as the light sees them: no need to fit the scene.
+        // Most windows are far smaller than any window around the bounds: no need to fit the scene.
         let scene = &self.input.scene;
         let both = Aabb::new(scene.casters.min.max(scene.receivers.min), scene.casters.max.min(scene.receivers.max));
         let meet = both.min.cmple(both.max).all();
-        if meet && window.area() <= WORTH_FOCUSING * lit_area(&both, self.travel) {
+        if meet && window.area() <= WORTH_FOCUSING * least_area(&both, self.travel) {
             return tight;
         }
         let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else { return tight };
@@ -148,7 +148,9 @@ impl Fitter<'_> {
             Window::steady(sight.light, bend, &body.vertices, margin)
         };
         // Against the uniform map of the same axis: windows are laid where they are smallest, whatever the axis.
-        let error = uniform_error(&sight) * (predictor.error(strength) / predictor.error(0.0));
+        let on_axis = predictor.error(strength);
+        let error =
+            if around == sight.frame { on_axis } else { uniform_error(&sight) * (on_axis / predictor.error(0.0)) };
         Layout { window, strength, error }
     }
 
@@ -182,8 +184,17 @@ impl Fitter<'_> {
     }
 }
 
-/// Area of a box as the light sees it: no window around it is smaller.
-fn lit_area(bounds: &Aabb, travel: DVec3) -> f64 {
+/// Area of the smallest rectangle around a box as the light sees it: a hexagon of three pairs of edges, one of which the rectangle is
+/// flush with.
+fn least_area(bounds: &Aabb, travel: DVec3) -> f64 {
     let size = bounds.max - bounds.min;
-    travel.abs().dot(DVec3::new(size.y * size.z, size.x * size.z, size.x * size.y))
+    let light = LightSpace::fixed(travel);
+    let edges = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| light.ray(axis * size).truncate());
+    let flush = |side: DVec2| {
+        let reach =
+            edges.iter().fold(DVec2::ZERO, |sum, edge| sum + DVec2::new(side.dot(*edge), side.perp_dot(*edge)).abs());
+        reach.element_product() / side.length_squared()
+    };
+    // An edge along the light is no side: its 0/0 is ignored.
+    edges.into_iter().map(flush).fold(f64::INFINITY, f64::min)
 }

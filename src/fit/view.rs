@@ -81,10 +81,10 @@ impl Fitter<'_> {
         let rows = self.texture_rows(&clip_from_render);
         let mut uniforms = self.uniforms(&rows, &clip_from_render);
         self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
-        let sides = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length);
-        let same = window.bend.is_none().then(|| texel.to_array());
+        let squares = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length_squared);
+        let same = window.bend.is_none().then(|| (texel * texel).to_array());
         let mut extremes =
-            extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| sides(vertex)));
+            extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| squares(vertex)));
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
         // Say what was cut.
         if window.size().min_element() < 3.0 * margin {

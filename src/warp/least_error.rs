@@ -152,15 +152,15 @@ impl Predictor {
 
     /// Side lines: the least and greatest c/W.
     fn sides(&self, kappa: f64) -> [f64; 2] {
-        let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for [along, across] in &self.points {
-            for lane in 0..LANES {
-                let slope = across[lane] / (1.0 + kappa * along[lane]);
-                low[lane] = if slope < low[lane] { slope } else { low[lane] };
-                high[lane] = if slope > high[lane] { slope } else { high[lane] };
+            let slopes: [f64; LANES] = core::array::from_fn(|lane| across[lane] / (1.0 + kappa * along[lane]));
+            for slope in slopes {
+                low = if slope < low { slope } else { low };
+                high = if slope > high { slope } else { high };
             }
         }
-        [low.into_iter().fold(f64::INFINITY, f64::min), high.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        [low, high]
     }
 
     /// The strength of the least error, at most κλ = `limit`.

@@ -29,9 +29,10 @@ pub(crate) fn worst(sight: &Sight, frame: &WarpFrame, strength: f64) -> f64 {
     let [a0, a1] = frame.sides(kappa, &sight.points);
     let along = frame.extent / (1.0 + strength);
     let mut worst = 0.0_f64;
-    for (point, size) in sight.points.iter().zip(&sight.pixel_sizes) {
+    let [constant, per_depth] = sight.pixel;
+    for (point, depth) in sight.points.iter().zip(&sight.depths) {
         let w = 1.0 + kappa * frame.coordinates(*point).x.max(0.0);
-        worst = worst.max(w * (a1 - a0).max(along * w) / size);
+        worst = worst.max(w * (a1 - a0).max(along * w) / (constant + per_depth * depth));
     }
     worst
 }

@@ -54,13 +54,15 @@ const FALSE_POSITIONS: u32 = 14;
 /// Continuous wherever `error` is and has one valley: that strength goes to 0 as the valley does. At most 17 evaluations.
 pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     let uniform = error(0.0);
-    let last = error(strength) - uniform;
-    if !(last > 0.0) {
+    let last = error(strength);
+    if !(last > uniform) {
         return strength;
     }
-    // The mean slope from 0: unlike the difference itself, it is not zero at 0 again, and over shares it is nearly straight.
-    let slope = |share: f64| (error(strength_of(share)) - uniform) / strength_of(share);
-    let mut high = (share_of(strength), last / strength);
+    // The mean slope from 0: unlike the difference itself, it is not zero at 0 again, and over shares it is nearly straight. A little is
+    // added, so that what is as good as zero is no worse than none.
+    let slope_of = |strength: f64, error: f64| (error - uniform) / strength + CLOSE * uniform / (1.0 + strength);
+    let slope = |share: f64| slope_of(strength_of(share), error(strength_of(share)));
+    let mut high = (share_of(strength), slope_of(strength, last));
     // A valley begins at 0, if there is one.
     let near = high.0 * FIRST_STEP;
     let mut low = (near, slope(near));
@@ -72,7 +74,7 @@ pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..FALSE_POSITIONS {
         let middle = (low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1)).clamp(low.0, high.0);
         let at = slope(middle);
-        if at.abs() * strength_of(middle).max(1.0) < CLOSE * uniform {
+        if at.abs() * strength_of(middle).max(1.0) < 0.5 * CLOSE * uniform {
             return strength_of(middle);
         }
         let is_high = at > 0.0;

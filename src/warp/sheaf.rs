@@ -22,6 +22,20 @@ const RAYS: [usize; 2] = [6, 4];
 /// Rays of the sheaf.
 const ALL: usize = RAYS[0] * RAYS[1];
 
+/// Column and row of each.
+const COLUMN: [f64; ALL] = places(1, RAYS[0]);
+const ROW: [f64; ALL] = places(RAYS[0], RAYS[1]);
+
+const fn places(repeat: usize, count: usize) -> [f64; ALL] {
+    let mut places = [0.0; ALL];
+    let mut ray = 0;
+    while ray < ALL {
+        places[ray] = (ray / repeat % count) as f64;
+        ray += 1;
+    }
+    places
+}
+
 /// Least coefficient of t in a wall: the eye in a wall itself is on its inner side.
 const SMALLEST: f64 = 1e-300;
 
@@ -49,8 +63,9 @@ impl Sheaf {
             high = high.max(at);
         }
         let cell = (high - low) / DVec2::new(RAYS[0] as f64, RAYS[1] as f64);
-        let [first, right, down] = [low + 0.5 * cell, low + 0.5 * cell + cell * DVec2::X, low + 0.5 * cell + cell * DVec2::Y]
-            .map(|at| <[DVec3; 2]>::from(camera.ray(at, camera.eye())));
+        let [first, right, down] =
+            [low + 0.5 * cell, low + 0.5 * cell + cell * DVec2::X, low + 0.5 * cell + cell * DVec2::Y]
+                .map(|at| <[DVec3; 2]>::from(camera.ray(at, camera.eye())));
         let steps = [right, down].map(|next| [next[0] - first[0], next[1] - first[1]]);
         // Between the depths of the body, and inside its walls.
         let inverse = camera.projection.spreads();
@@ -70,16 +85,15 @@ impl Sheaf {
         let (coefficient, constant, moving) = if self.inverse { (at_start, along, 1) } else { (along, at_start, 0) };
         let scale = -1.0 / coefficient.abs().max(SMALLEST);
         let [across, down] = self.steps.map(|step| normal.dot(step[moving]) * scale);
-        let bound = |ray: usize| {
-            constant * scale + across * (ray % RAYS[0]) as f64 + down * (ray / RAYS[0]) as f64
-        };
+        let bounds: [f64; ALL] = core::array::from_fn(|ray| constant * scale + across * COLUMN[ray] + down * ROW[ray]);
+        // Plain comparisons: a bound that is not a number bounds nothing.
         if coefficient >= 0.0 {
-            for (ray, low) in self.low.iter_mut().enumerate() {
-                *low = low.max(bound(ray));
+            for (low, bound) in self.low.iter_mut().zip(bounds) {
+                *low = if bound > *low { bound } else { *low };
             }
         } else {
-            for (ray, high) in self.high.iter_mut().enumerate() {
-                *high = high.min(-bound(ray));
+            for (high, bound) in self.high.iter_mut().zip(bounds) {
+                *high = if -bound < *high { -bound } else { *high };
             }
         }
     }
@@ -90,10 +104,9 @@ impl Sheaf {
         let first = self.first.map(&across);
         let steps = self.steps.map(|step| step.map(&across));
         (0..ALL).filter_map(move |ray| {
-            let (column, row) = ((ray % RAYS[0]) as f64, (ray / RAYS[0]) as f64);
             let [low, high] = [self.low[ray], self.high[ray]];
             let [near, far] = if self.inverse { [1.0 / high, 1.0 / low] } else { [low, high] };
-            let at = |part: usize| first[part] + steps[0][part] * column + steps[1][part] * row;
+            let at = |part: usize| first[part] + steps[0][part] * COLUMN[ray] + steps[1][part] * ROW[ray];
             let length = far - near;
             (low < high && length > 0.0 && length.is_finite())
                 .then(|| ([at(0) + at(1) * near, at(0) + at(1) * far], length))

@@ -31,8 +31,8 @@ pub(crate) struct Sight {
     pub(crate) depths: ArrayVec<f64, MAX_VERTICES>,
     /// (p, q) of the eye.
     pub(crate) eye: DVec2,
-    /// Width or height of a pixel at each of them, whichever is less, world units.
-    pub(crate) pixel_sizes: ArrayVec<f64, MAX_VERTICES>,
+    /// Width or height of a pixel, whichever is less, world units: a constant, and what a unit of eye depth adds.
+    pub(crate) pixel: [f64; 2],
     /// The view direction in (p, q): its length is the sine of the angle between light and view.
     pub(crate) view: DVec2,
     /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest. The centre line passes through
@@ -55,7 +55,6 @@ impl Sight {
         let depths: ArrayVec<f64, MAX_VERTICES> =
             vertices().map(|vertex| camera.eye_depth(*vertex, origin).clamp(near, far)).collect();
         let per_depth = camera.pixels_per_unit().recip();
-        let pixel_size = |depth: &f64| per_depth * if camera.projection.spreads() { *depth } else { 1.0 };
         let eye = across(camera.eye() - origin);
         let points: ArrayVec<DVec2, MAX_VERTICES> = vertices().map(|vertex| across(*vertex)).collect();
         let view = across(camera.forward());
@@ -63,7 +62,7 @@ impl Sight {
             light,
             frame: WarpFrame::around(view, eye, &points),
             points,
-            pixel_sizes: depths.iter().map(pixel_size).collect(),
+            pixel: if camera.projection.spreads() { [0.0, per_depth] } else { [per_depth, 0.0] },
             depths,
             eye,
             view,

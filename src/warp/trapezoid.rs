@@ -51,8 +51,20 @@ pub(crate) fn choose(camera: &Camera, sight: &Sight, focus: Focus) -> Choice {
         };
         sight.eye + sight.view * depth + sight.right * aside.x + sight.up * aside.y
     };
-    let trapezoid = Trapezoid::around([image(near), image(far)], &sight.points, image(near + beyond), LINE_80_PERCENT);
-    Choice { frame: trapezoid.frame, strength: trapezoid.kappa * trapezoid.frame.extent }
+    let centres = [image(near), image(far)];
+    let (frame, _, kappa) = laid(centres, &sight.points, image(near + beyond), LINE_80_PERCENT);
+    Choice { frame, strength: kappa * frame.extent }
+}
+
+/// Steps 1 to 3: the frame along l, d', and 1/η.
+fn laid([near, far]: [DVec2; 2], hull: &[DVec2], focus_point: DVec2, line: f64) -> (WarpFrame, f64, f64) {
+    let frame = WarpFrame::around(far - near, near, hull);
+    let focus = frame.coordinates(focus_point).x;
+    // Uniform where the centre line has no direction.
+    let diameter = hull.iter().map(|point| point.distance_squared(near)).fold(0.0, f64::max).sqrt();
+    let directed = far.distance(near) > NO_DIRECTION * diameter;
+    let kappa = if directed { kappa_for_line(frame.extent, focus, line) } else { 0.0 };
+    (frame, focus, kappa)
 }
 
 /// A trapezoid around what is in view, as the light sees it.
@@ -76,13 +88,7 @@ impl Trapezoid {
     /// the line, and numbers that are not finite give parallel sides. O(points).
     #[must_use]
     pub fn around(centres: [DVec2; 2], hull: &[DVec2], focus_point: DVec2, line: f64) -> Self {
-        let [near, far] = centres;
-        let frame = WarpFrame::around(far - near, near, hull);
-        let focus = frame.coordinates(focus_point).x;
-        // Uniform where the centre line has no direction.
-        let diameter = hull.iter().map(|point| point.distance(near)).fold(0.0, f64::max);
-        let directed = far.distance(near) > NO_DIRECTION * diameter;
-        let kappa = if directed { kappa_for_line(frame.extent, focus, line) } else { 0.0 };
+        let (frame, focus, kappa) = laid(centres, hull, focus_point, line);
         Self { frame, focus, kappa, sides: frame.sides(kappa, hull) }
     }
 
