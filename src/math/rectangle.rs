@@ -9,8 +9,10 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 
 /// How much larger than the least a rectangle is when it still has 1/e of its weight, as a share of the least area. At 0 the axis jumps from
-/// edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis wanders.
-const SOFTNESS: f64 = 0.03;
+/// edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis wanders. Measured on camera paths: at 0.03 two
+/// in a thousand turn by tens of texels at once and rectangles are 0.1 % above the least in the median, at 0.05 none does and they
+/// are 0.8 % above it, at 0.1 3.4 %.
+const SOFTNESS: f64 = 0.05;
 
 /// Logarithm of the least vote that counts: e^−40 is less than a rounding of f64. Nearer to 0 edges would come and go with a jump.
 const LEAST_VOTE: f64 = -40.0;
