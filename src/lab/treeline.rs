@@ -373,20 +373,16 @@ fn add_grass(mesh: &mut MeshBuilder) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::shapes::checks::{assert_sound, fingerprint};
+    use crate::lab::shapes::checks::{assert_number_of_triangles, assert_sound_every_time};
 
     #[test]
     fn has_the_thesis_number_of_triangles() {
-        let count = treeline().triangles.len();
-        assert!(count.abs_diff(TRIANGLES) <= TRIANGLES / 100, "{count} triangles, expected {TRIANGLES} +- 1 %");
+        assert_number_of_triangles(treeline, TRIANGLES);
     }
 
     #[test]
     fn is_sound_and_equal_every_time() {
-        let model = treeline();
-        assert_sound(&model);
-        assert!((20..=400).contains(&model.objects.len()), "{} objects", model.objects.len());
-        assert_eq!(fingerprint(&model), fingerprint(&treeline()));
+        assert_sound_every_time(treeline);
     }
 
     #[test]

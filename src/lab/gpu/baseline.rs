@@ -188,8 +188,7 @@ impl Entries {
     fn new(gpu: &Gpu, renderer: &Renderer, shot: &Shot, maps: &ShadowMaps) -> Self {
         // Casters: a map of the same size, and a matrix for each view.
         let map = map_by_hand(gpu, maps.depth_texture().size());
-        let text = [include_str!("cutout.wgsl"), include_str!("by_hand_casters.wgsl")].concat();
-        let casters_by_hand = pipelines::caster_pair(gpu, "casters by hand", &text, None, renderer.caster_layout());
+        let casters_by_hand = pipelines::casters_by_hand(gpu, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
         // Receivers by hand: the first view's map.
         let layout = receiver_layout(gpu);
