@@ -67,9 +67,9 @@ pub enum ClipDepth {
 /// the error smaller, more make them larger; matrices do not depend on it.
 pub const DEFAULT_VIEWPORT: UVec2 = UVec2::new(1920, 1080);
 
-/// How far a camera's axes may be from orthonormal, as the largest entry of `RᵀR − 1`. f32 matrices that were multiplied
-/// a few times stay below 1e-5; a scale of 1 % shows as 2e-2. Smaller refuses cameras that engines do send, larger lets a
-/// scaled view through, whose eye depths would be wrong.
+/// How far a camera's axes may be from orthonormal, as the largest entry of `RᵀR − 1`. f32 matrices that were
+/// multiplied a few times stay below 1e-5; a scale of 1 % shows as 2e-2. Smaller refuses cameras that engines do send,
+/// larger lets a scaled view through, whose eye depths would be wrong.
 const RIGID_TOLERANCE: f64 = 1e-3;
 
 impl Camera {
@@ -84,8 +84,9 @@ impl Camera {
         Self { world_from_view, projection, viewport: DEFAULT_VIEWPORT }
     }
 
-    /// `world_from_view` of a camera at `eye` that looks at `target`; `up` may be any direction that is not along the view.
-    /// Entries are NaN where the directions do not determine a frame, which [`fit`](crate::ShadowTechnique::fit) refuses.
+    /// `world_from_view` of a camera at `eye` that looks at `target`; `up` may be any direction that is not along the
+    /// view. Entries are NaN where the directions do not determine a frame,
+    /// which [`fit`](crate::ShadowTechnique::fit) refuses.
     #[must_use]
     pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
         let back = (eye - target).normalize();
@@ -95,18 +96,19 @@ impl Camera {
 
     /// Reads a camera out of an engine's matrices (f64).
     ///
-    /// Recognised: perspective (`w = −z`) and orthographic projections; standard and reversed depth; finite and infinite
-    /// far; off-centre and jittered frusta; mirrored x or y (flipped clip space). The projection may carry any positive
-    /// scale.
+    /// Recognised: perspective (`w = −z`) and orthographic projections; standard and reversed depth; finite and
+    /// infinite far; off-centre and jittered frusta; mirrored x or y (flipped clip space). The projection may carry any
+    /// positive scale.
     ///
     /// # Errors
-    /// [`FitError::NotAProjection`] names the entry that rules the matrix out; other errors name `world_from_view` or the
-    /// recovered plane.
+    /// [`FitError::NotAProjection`] names the entry that rules the matrix out; other errors name `world_from_view` or
+    /// the recovered plane.
     pub fn from_matrices(world_from_view: DMat4, clip_from_view: DMat4, depth: ClipDepth) -> Result<Self, FitError> {
         Self::recognise(world_from_view, clip_from_view, depth, f64::EPSILON)
     }
 
-    /// [`from_matrices`](Self::from_matrices) for f32 matrices: far planes that f32 cannot tell from infinity are infinite.
+    /// [`from_matrices`](Self::from_matrices) for f32 matrices:
+    /// far planes that f32 cannot tell from infinity are infinite.
     ///
     /// # Errors
     /// As [`from_matrices`](Self::from_matrices).
@@ -199,7 +201,8 @@ impl Camera {
         }
     }
 
-    /// The ray of a place in the picture, as (start, direction) in render space: its point of eye depth ζ is start + ζ direction.
+    /// The ray of a place in the picture, as (start, direction) in render space:
+    /// its point of eye depth ζ is start + ζ direction.
     pub(crate) fn ray(&self, at: DVec2, origin: DVec3) -> (DVec3, DVec3) {
         let eye = self.eye() - origin;
         let aside = self.world_from_view.x_axis.truncate() * at.x + self.world_from_view.y_axis.truncate() * at.y;

@@ -50,8 +50,8 @@ named! {
 
     /// The warp with the least worst footprint.
     ///
-    /// After B. Lloyd et al., *Logarithmic perspective shadow maps*, ACM Transactions on Graphics 27(4), 2008, whose bound
-    /// it minimises.
+    /// After B. Lloyd et al., *Logarithmic perspective shadow maps*, ACM Transactions on Graphics 27(4), 2008, whose
+    /// bound it minimises.
     minimax "minimax" Warp::Minimax;
 
     /// The warp with the least predicted picture error: this crate's own, see [`Warp::LeastError`].

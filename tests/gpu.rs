@@ -173,7 +173,8 @@ fn warped() -> [Remix; 5] {
     [fixed(0.4), fixed(20.0), techniques::tsm(), techniques::lispsm(), Remix { guard: false, ..techniques::psm() }]
 }
 
-/// A map holds the linear depth of the first surface along the light, and 1 where there is none, whatever it is warped by.
+/// A map holds the linear depth of the first surface along the light, and 1 where there is none,
+/// whatever it is warped by.
 #[test]
 fn the_map_holds_analytic_depth() {
     let Some(stage) = Stage::new(DVec3::ZERO) else { return };
@@ -215,8 +216,8 @@ fn holds_analytic_depth(stage: &Stage, technique: &Remix) -> f32 {
             let at = (start + travel * distance).as_vec3();
             let expected = frame.views[0].depth_from_render.dot(at.extend(1.0));
             hits += 1;
-            // The rasteriser snaps vertices to 1/256 texel; a plane's depth moves by that share of its slope, which grows with
-            // the size of texels.
+            // The rasteriser snaps vertices to 1/256 texel; a plane's depth moves by that share of its slope, which
+            // grows with the size of texels.
             let w = clip_from_render.row(3).dot(at.as_dvec3().extend(1.0)) as f32;
             strays += usize::from((stored - expected.min(1.0)).abs() > 1e-4 * w.max(1.0));
         }

@@ -1,5 +1,5 @@
-//! What every fit promises, over hostile inputs: nothing that can be shadowed is outside its map, nothing that can throw a
-//! shadow is culled, nothing is NaN, equal inputs give equal bits, snapped maps move by whole texels.
+//! What every fit promises, over hostile inputs: nothing that can be shadowed is outside its map, nothing that can
+//! throw a shadow is culled, nothing is NaN, equal inputs give equal bits, snapped maps move by whole texels.
 
 mod common;
 
@@ -38,9 +38,9 @@ fn nothing_is_lost() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200_000, max_shrink_iters: 2_000, ..ProptestConfig::default() })]
 
-    /// The main promise, over 200,000 inputs: receivers that a caster can shadow are inside the map with w > 0 and depth in
-    /// [0, 1]; such casters pass the cull volume and are not clipped away; numbers are finite; bits are equal; no views
-    /// means a reason; the orientation is kept.
+    /// The main promise, over 200,000 inputs: receivers that a caster can shadow are inside the map with w > 0 and
+    /// depth in [0, 1]; such casters pass the cull volume and are not clipped away; numbers are finite; bits are equal;
+    /// no views means a reason; the orientation is kept.
     fn nothing_is_lost_over_hostile_inputs(inputs in inputs(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
         CASES.count(0);
         let frame = sound(remix, &inputs)?;

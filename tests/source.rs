@@ -1,4 +1,5 @@
-//! The shape of the source: levels, headings, names, and the files at the top. What a rule forbids is shown with its file.
+//! The shape of the source: levels, headings, names, and the files at the top.
+//! What a rule forbids is shown with its file.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -189,7 +189,8 @@ fn pixel_area(left: f64, top: f64, function: impl Fn(f64, f64) -> f64) -> f64 {
     parts.sum()
 }
 
-/// Seen straight from above, the shadow of a wall's straight edge is a half-plane, and each pixel's share of it is known.
+/// Seen straight from above, the shadow of a wall's straight edge is a half-plane,
+/// and each pixel's share of it is known.
 #[test]
 fn a_walls_shadow_covers_what_geometry_says() {
     let along = DVec3::new(1.0, 0.0, 0.3).normalize();

@@ -108,8 +108,9 @@ impl Emitted {
     }
 }
 
-/// `M_t` and `M_s` of `MATH.md` section 2 for one texel over the map: 1/(∂Y/∂u) and 1/(∂X/∂c) over eye depth, largest over the corners of
-/// the view, by differentiating the emitted matrix. Y is the map's coordinate that does not change across the axis.
+/// `M_t` and `M_s` of `MATH.md` section 2 for one texel over the map: 1/(∂Y/∂u) and 1/(∂X/∂c) over eye depth, largest
+/// over the corners of the view, by differentiating the emitted matrix.
+/// Y is the map's coordinate that does not change across the axis.
 fn worst_footprint(frame: &ShadowFrame, view: &View) -> [f64; 2] {
     let emitted = Emitted::of(frame, view);
     let mut worst = [0.0_f64; 2];
@@ -128,8 +129,8 @@ fn worst_footprint(frame: &ShadowFrame, view: &View) -> [f64; 2] {
     worst
 }
 
-/// The same for a warp along the view, whose strength alone is known: in the fitted form of `MATH.md` section 0, with side lines through
-/// the eye's image.
+/// The same for a warp along the view, whose strength alone is known: in the fitted form of `MATH.md` section 0, with
+/// side lines through the eye's image.
 fn worst_fitted(view: &View, strength: f64) -> f64 {
     let (axis, side) = (view.axis(), view.axis().cross(view.travel).normalize());
     let points = view.corners().map(|at| (at.dot(axis), at.dot(side), -at.z));
@@ -232,8 +233,9 @@ proptest! {
         }
     }
 
-    /// Minimax: its worst footprint, max(`M_s`, `M_t`) over the corners of the view, is no larger than that of any other warp. Compared are
-    /// (a) emitted matrices without guard, each along its own axis, differentiated; (b) any strength at all along the view, fitted.
+    /// Minimax: its worst footprint, max(`M_s`, `M_t`) over the corners of the view, is no larger than that of any
+    /// other warp. Compared are (a) emitted matrices without guard, each along its own axis, differentiated; (b) any
+    /// strength at all along the view, fitted.
     fn minimax_has_the_least_worst_footprint(
         view in views(), share in 0.0..1.0_f32, log_strength in -3.0..2.0_f64, log_back in -3.0..3.0_f64,
     ) {
@@ -287,7 +289,8 @@ proptest! {
     }
 }
 
-/// PSM with light that crosses the eye plane: the map moves by as much as the light turns, with no jump where ℓ'_w changes its sign.
+/// PSM with light that crosses the eye plane: the map moves by as much as the light turns,
+/// with no jump where ℓ'_w changes its sign.
 #[test]
 fn psm_is_continuous_across_the_eye_plane() {
     let largest_step = |steps: u32, guard: bool| {

@@ -1,6 +1,7 @@
-//! What every warped fit promises, over hostile inputs: what can be shadowed is inside the map with W > 0, what can throw a shadow is
-//! neither culled nor clipped, one light ray is one point of the map, depth grows along it, the winding of the world is kept, nothing
-//! is NaN, equal inputs give equal bits; and guarded warps are never predicted to be worse than none.
+//! What every warped fit promises, over hostile inputs: what can be shadowed is inside the map with W > 0, what can
+//! throw a shadow is neither culled nor clipped, one light ray is one point of the map, depth grows along it, the
+//! winding of the world is kept, nothing is NaN, equal inputs give equal bits;
+//! and guarded warps are never predicted to be worse than none.
 
 mod common;
 
@@ -14,7 +15,8 @@ use proptest::test_runner::TestCaseError;
 /// Inputs that each warp is tried on.
 const CASES: u32 = 200_000;
 
-/// Every warp that bends, with options at random, and whether it is guarded. Guards leave fixed strengths and least-error alone.
+/// Every warp that bends, with options at random, and whether it is guarded.
+/// Guards leave fixed strengths and least-error alone.
 fn remixes([strength, focus, pull_back]: [f32; 3]) -> [Remix; 12] {
     let warped = |warp, guard| Remix { warp, guard, ..Remix::default() };
     let focused = |focus| Warp::Trapezoidal { focus };
@@ -49,8 +51,8 @@ struct Pair {
     caster: DVec3,
 }
 
-/// The receiver at some shares of the view (or, if `anywhere`, of the receivers' bounds) and a caster at a share of its ray to the light,
-/// if there are such.
+/// The receiver at some shares of the view (or, if `anywhere`, of the receivers' bounds) and a caster at a share of its
+/// ray to the light, if there are such.
 fn pair(inputs: &Inputs, shares: [f64; 3], along: f64, anywhere: bool) -> Option<Pair> {
     if inputs.receivers.is_empty() {
         return None;

@@ -194,8 +194,8 @@ impl MeshBuilder {
         self.cap(first + (outlines.len() as u32 - 1) * sides, sides, false);
     }
 
-    /// Adds a tube through `rings` (at least two, at different places) with `sides` corners each; the start is open when
-    /// `open_start` (it sits inside something else), the end closes in a point beyond the last ring.
+    /// Adds a tube through `rings` (at least two, at different places) with `sides` corners each; the start is open
+    /// when `open_start` (it sits inside something else), the end closes in a point beyond the last ring.
     pub fn tube(&mut self, rings: &[Ring], sides: u32, open_start: bool) {
         let first = self.model.positions.len() as u32;
         let last = rings.len() - 1;
@@ -232,8 +232,8 @@ impl MeshBuilder {
         (rings - 1) * sides * 2 + sides + if open_start { 0 } else { sides - 2 }
     }
 
-    /// Adds an ellipsoid of `sides` meridians and `bands` (at least 2) bands from pole to pole; `half` are its half axes
-    /// along the columns of `axes` (a rotation), `dent(direction)` scales the radius.
+    /// Adds an ellipsoid of `sides` meridians and `bands` (at least 2) bands from pole to pole; `half` are its half
+    /// axes along the columns of `axes` (a rotation), `dent(direction)` scales the radius.
     pub fn ellipsoid(
         &mut self,
         centre: DVec3,
@@ -282,7 +282,8 @@ impl MeshBuilder {
     }
 }
 
-/// A regular outline of `sides` corners around `centre` in x and z, counter-clockwise seen from above; `turn` in radians.
+/// A regular outline of `sides` corners around `centre` in x and z, counter-clockwise seen from above;
+/// `turn` in radians.
 #[must_use]
 pub fn outline(centre: DVec3, radius: f64, sides: u32, turn: f64) -> Vec<DVec3> {
     let corner = |i: u32| {

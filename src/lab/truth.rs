@@ -5,8 +5,8 @@
 //!
 //! The rules, each of which the published floors of nine cases depend on (`tests/truth.rs`):
 //! - A sample is *defined* when its view ray meets geometry between the near and the far plane and the light can shine
-//!   on the side that is seen: N·L > 0 with the geometric normal turned towards the eye, whatever the winding says. For a
-//!   spot or point light the point must also lie inside cone and range.
+//!   on the side that is seen: N·L > 0 with the geometric normal turned towards the eye, whatever the winding says. For
+//!   a spot or point light the point must also lie inside cone and range.
 //! - A pixel is *valid* when its centre sample is defined.
 //! - Samples of the area that are not defined do not count: the area truth is the mean over the others.
 //! - 16 samples, jittered in a 4×4 grid; where they, the centre and the pixel's corners disagree, 64 more in an 8×8

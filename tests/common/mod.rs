@@ -205,8 +205,8 @@ fn stage() -> impl Strategy<Value = Stage> {
     )
 }
 
-/// Worlds near and far, light along the view exactly or nearly, flat boxes and none, eyes inside casters, every lens from 1° to 179°,
-/// depths over eight decades or without end, maps of 1 to 16384 texels.
+/// Worlds near and far, light along the view exactly or nearly, flat boxes and none, eyes inside casters, every lens
+/// from 1° to 179°, depths over eight decades or without end, maps of 1 to 16384 texels.
 pub fn inputs() -> impl Strategy<Value = Inputs> {
     let kind = prop_oneof![16 => Just(0_u8), 4 => Just(1), 1 => Just(2), 1 => Just(3)];
     (stage(), kind).prop_flat_map(|(stage, kind)| {

@@ -31,7 +31,8 @@ fn at(frame: &ShadowFrame, inputs: &Inputs, position: DVec3, normal: DVec3) -> O
     footprint_at(&frame.uniforms.views[0], inputs.side, &inputs.camera, inputs.origin, position, normal)
 }
 
-/// Cases, those with a footprint, those of a warped map, and those in which J is known to the last of the digits asked for.
+/// Cases, those with a footprint, those of a warped map, and those in which J is known to the last of the digits asked
+/// for.
 static REACHED: Tally<4> = Tally::new();
 
 #[test]
@@ -77,12 +78,12 @@ proptest! {
     }
 }
 
-/// Points in view; by how many millionths the perspective part lies above the predicted range in warped maps, and by what
-/// per cent of it below.
+/// Points in view; by how many millionths the perspective part lies above the predicted range in warped maps, and by
+/// what per cent of it below.
 static PREDICTED: Tally<3> = Tally::new();
 
-/// A texel's side is predicted at the corners of what is in view, its longest extent measured anywhere: a parallelogram's is at most
-/// √2 of its longest side, and the error W²/ζ of a warped map is least somewhere in between.
+/// A texel's side is predicted at the corners of what is in view, its longest extent measured anywhere: a
+/// parallelogram's is at most √2 of its longest side, and the error W²/ζ of a warped map is least somewhere in between.
 #[test]
 fn predicted_extremes_hold() {
     predicted_extremes_hold_over_hostile_frames();

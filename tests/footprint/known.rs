@@ -31,8 +31,8 @@ fn overhead(strength: f32) -> (ShadowFrame, Camera) {
 /// Texels of those maps: a border of a few must not show.
 const SIDE: u32 = 8192;
 
-/// The table of E(z), the error along the view of a map seen level under light from above, and the storage S = `M_s` `M_t`
-/// of uniform (9900) and perspective (99) warps at a ratio of depths of 100: MATH.md section 8.
+/// The table of E(z), the error along the view of a map seen level under light from above, and the storage S = `M_s`
+/// `M_t` of uniform (9900) and perspective (99) warps at a ratio of depths of 100: MATH.md section 8.
 #[test]
 fn overhead_light_golden_values() {
     let depths = [1.0, 2.0, 5.0, 10.0, 24.785_05, 50.0, 100.0_f64];

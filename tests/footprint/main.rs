@@ -1,5 +1,5 @@
-//! Footprints: the Jacobian against rays through neighbouring pixels, the textbook's values, what a fit predicts of them,
-//! and the debug view for shaders against its twin and the exact function.
+//! Footprints: the Jacobian against rays through neighbouring pixels, the textbook's values, what a fit predicts of
+//! them, and the debug view for shaders against its twin and the exact function.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -69,8 +69,8 @@ struct Sample { view: AntumbraView, position_side: vec4f, dx: vec4f, dy: vec4f }
     }
 }";
 
-/// Points on the ground and on walls of a small scene, in maps of every technique, with the exact texels per pixel and the
-/// condition of J.
+/// Points on the ground and on walls of a small scene, in maps of every technique, with the exact texels per pixel and
+/// the condition of J.
 fn samples() -> Vec<(Sample, f64, f64)> {
     let model = support::boxes();
     let camera = support::camera(UVec2::new(640, 480));

@@ -43,8 +43,8 @@ fn texels(view: &ViewUniforms, side: u32, position: DVec3, step: DVec3) -> DVec2
     DVec2::new(moved(u), moved(v)) * f64::from(side)
 }
 
-/// Share of itself by which anything may change over a step of the stencil: its fourth power is the error, 1e-16 over it
-/// the rounding.
+/// Share of itself by which anything may change over a step of the stencil: its fourth power is the error, 1e-16 over
+/// it the rounding.
 const STEP: f64 = 2e-4;
 
 /// J by the five-point stencil along both axes of the picture; `None` where the surface is all but seen from its edge.
@@ -73,8 +73,8 @@ pub(crate) fn differences(
     })
 }
 
-/// What rounding in f64 does to the gradients of a map, texels per world unit: places in it are differences of numbers that grow with the
-/// distance from the origin.
+/// What rounding in f64 does to the gradients of a map, texels per world unit: places in it are differences of numbers
+/// that grow with the distance from the origin.
 pub(crate) fn doubt(view: &ViewUniforms, side: u32, position: DVec3) -> f64 {
     let [u, v, w] = [view.u_from_render, view.v_from_render, view.w_from_render].map(|row| Vec4::from(row).as_dvec4());
     let (at, size) = (w.dot(position.extend(1.0)), position.extend(1.0).abs());

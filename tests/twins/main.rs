@@ -1,8 +1,8 @@
 //! Shader functions against their Rust twins, on an adapter.
 //!
 //! Both sides round every operation, in an order that compilers may change, so two bounds hold:
-//! - a lookup differs by the rounding of its own formula, propagated to first order ([`bound::LookupBound`]; for warped maps, operation
-//!   by operation: [`rounded::Rounded`]);
+//! - a lookup differs by the rounding of its own formula, propagated to first order ([`bound::LookupBound`]; for warped
+//!   maps, operation by operation: [`rounded::Rounded`]);
 //! - a comparison can tip over where depths are that close, and a texel change where coordinates are; the result then
 //!   lies between the twin's values on both sides of the doubt. Samplers may keep 8 bits of the place between texels,
 //!   rounded (as the twin does) or cut, or all of them: that changes a weight by at most 1/256 along each axis, and so

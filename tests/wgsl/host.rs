@@ -27,8 +27,8 @@ pub(crate) fn host(key: WgslKey, bindings: Bindings) -> String {
 }
 
 /// Stages around everything else that a shape has, given the names of the host's matrix and row of depth. Casters of an
-/// affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map carry their linear
-/// depth from the vertices to the fragments, which write it.
+/// affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map carry their
+/// linear depth from the vertices to the fragments, which write it.
 pub(crate) fn stages(shape: MapShape, matrix: &str, depth_row: &str) -> String {
     let text = match shape {
         MapShape::Affine => {

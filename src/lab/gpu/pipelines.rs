@@ -106,8 +106,8 @@ pub(super) enum Host {
 }
 
 impl Host {
-    /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they cost;
-    /// their lookup stays whole. In warped maps nothing of it is linear in position.
+    /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they
+    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position.
     pub(super) fn of(key: WgslKey) -> Self {
         match (key.shape, key.filter) {
             (MapShape::Affine, Pcf::Point | Pcf::Hardware2x2) => Self::Placed,
