@@ -1,6 +1,6 @@
 //! The debug view of aliasing: the Rust twin of `shaders/footprint.wgsl` ([`wgsl::FOOTPRINT`](crate::wgsl::FOOTPRINT)).
 //!
-//! Each function has the name and the arithmetic of its shader twin, in f32; `tests/footprint.rs` holds them together
+//! Each function has the name and the arithmetic of its shader twin, in f32; `tests/footprint` holds them together
 //! on an adapter. [`aliasing::footprint_at`](crate::aliasing::footprint_at) is the exact one,
 //! from a normal instead of derivatives.
 //!
