@@ -1,10 +1,12 @@
-//! Error against run time, measured against ray-traced truth: each technique, map sizes 256 to 4096, every built-in viewpoint.
+//! Error against run time, measured against ray-traced truth: each technique, map sizes 256 to 4096,
+//! every built-in viewpoint.
 //!
-//! `cargo bench --bench work_precision` writes `docs/BENCHMARKS.md`, `docs/work_precision.csv` and `docs/work_precision-*.svg`;
-//! `-- --quick` looks at one viewpoint a scene at half size, into `target/work_precision` instead.
+//! `cargo bench --bench work_precision` writes `docs/BENCHMARKS.md`, `docs/work_precision.csv` and
+//! `docs/work_precision-*.svg`; `-- --quick` looks at one viewpoint a scene at half size,
+//! into `target/work_precision` instead.
 //!
-//! Beside every map size stands what the same passes cost written by hand (a depth pass with one matrix, a receiver with one
-//! comparison sample and a constant bias), drawn in turns in the same run; the receiver with three yardsticks.
+//! Beside every map size stands what the same passes cost written by hand (a depth pass with one matrix, a receiver
+//! with one comparison sample and a constant bias), drawn in turns in the same run; the receiver with three yardsticks.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -21,12 +21,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Measures shadow-mapping techniques on scenes and cameras against ray-traced truth, and writes a report.
 ///
-/// With no arguments: the built-in scenes TreeLine and SparseCity, all their viewpoints, all techniques, maps of 512, 1024
-/// and 2048 texels, into target/compare. Each run gives a picture of the shadows, a map of its errors, and a row of figures:
-/// errors against the truth, times of fit, casters, filter and receivers, memory, and what was left out.
+/// With no arguments: the built-in scenes TreeLine and SparseCity, all their viewpoints, all techniques, maps of 512,
+/// 1024 and 2048 texels, into target/compare. Each run gives a picture of the shadows, a map of its errors, and a row
+/// of figures: errors against the truth, times of fit, casters, filter and receivers, memory, and what was left out.
 ///
-/// Truth (traced once and kept under target/antumbra-truth): visibility of the light at each pixel's centre, and averaged
-/// over its area. A perfect hard-edged shadow scores 0 against the first and the "floor" against the second.
+/// Truth (traced once and kept under target/antumbra-truth): visibility of the light at each pixel's centre, and
+/// averaged over its area. A perfect hard-edged shadow scores 0 against the first and the "floor" against the second.
 #[derive(Parser)]
 #[command(version, after_help = AFTER_HELP)]
 struct Arguments {

@@ -17,9 +17,9 @@ use serde_json::json;
 
 /// Draws the shadow mask of one case: 8-bit grey, row 0 on top, 255 lit, 0 in shadow, sky 255.
 ///
-/// A case is a JSON file with name, scene (treeline, sparse-city, or a .glb/.gltf path relative to the case's folder or its
-/// parent), camera {eye, target, up, `fov_y_deg`, near, far}, light {kind: directional, travel}, viewport [w, h] and
-/// `shadow_distance`. Bad input ends with one line and exit code 2, and writes nothing.
+/// A case is a JSON file with name, scene (treeline, sparse-city, or a .glb/.gltf path relative to the case's folder or
+/// its parent), camera {eye, target, up, `fov_y_deg`, near, far}, light {kind: directional, travel}, viewport [w, h]
+/// and `shadow_distance`. Bad input ends with one line and exit code 2, and writes nothing.
 #[derive(Parser)]
 #[command(version, after_help = "Example: mask --case street.json --technique fsm --size 1024 --out street.png")]
 struct Arguments {

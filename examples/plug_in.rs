@@ -1,7 +1,7 @@
 //! The smallest engine with shadows: a few boxes and a ball in the sun, drawn to `target/plug_in.png`.
 //!
-//! `cargo run --example plug_in`. Read it from top to bottom; what concerns shadows is numbered 1 to 6. The engine keeps
-//! its own device, vertex format, pipelines, passes and reversed-depth camera.
+//! `cargo run --example plug_in`. Read it from top to bottom; what concerns shadows is numbered 1 to 6. The engine
+//! keeps its own device, vertex format, pipelines, passes and reversed-depth camera.
 
 use std::error::Error;
 use std::f32::consts::{PI, TAU};

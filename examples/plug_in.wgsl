@@ -1,4 +1,5 @@
-// The engine's own shader. `antumbra_caster`, `antumbra_place` and `antumbra_lit` come from the library's text in front of it.
+// The engine's own shader. `antumbra_caster`, `antumbra_place` and `antumbra_lit` come from the library's text in front
+// of it.
 struct Engine {
     clip_from_world: mat4x4f,
     // The direction to the sun.
@@ -16,8 +17,8 @@ struct Surface {
 
 @vertex
 fn place(@location(0) position: vec3f, @location(1) normal: vec3f, @location(2) colour: vec3f) -> Surface {
-    // Meshes here have flat faces or small ones, and are closed: their normals are on the side that is looked at. Smooth normals
-    // on large triangles would take `antumbra_visibility` in the fragment stage instead.
+    // Meshes here have flat faces or small ones, and are closed: their normals are on the side that is looked at.
+    // Smooth normals on large triangles would take `antumbra_visibility` in the fragment stage instead.
     let look = antumbra_place(position, normal);
     return Surface(engine.clip_from_world * vec4f(position, 1.0), normal, colour, vec3f(look.uv, look.depth));
 }

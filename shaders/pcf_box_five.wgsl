@@ -9,8 +9,8 @@ fn antumbra_box_row(map: texture_depth_2d, compare: sampler_comparison, look: An
         + antumbra_tap(map, compare, look, vec2f(x.z, y)) * weight.z;
 }
 
-// A box five texels wide around the receiver. Along an axis it weighs six texels (1 - f, 1, 1, 1, 1, f) / 5, which three
-// bilinear taps can do, each between two of them.
+// A box five texels wide around the receiver. Along an axis it weighs six texels (1 - f, 1, 1, 1, 1, f) / 5, which
+// three bilinear taps can do, each between two of them.
 fn antumbra_filter(map: texture_depth_2d, compare: sampler_comparison, look: AntumbraLookup) -> f32 {
     let f = fract(look.uv * vec2f(textureDimensions(map)) - 0.5);
     let first = 1.0 / (2.0 - f) - 2.0 - f;

@@ -1,16 +1,19 @@
 //! The footprint of a texel in the picture: how far aliasing goes at a point, and where it comes from.
 //!
-//! At a point of a receiver, J = ∂texel/∂pixel is the Jacobian of the map with respect to the screen, along the plane of
-//! the receiver. Its smallest singular value is the number of texels over a pixel in the direction in which there are
-//! fewest; one over it, Lloyd's m, is the longest extent of a texel in the picture. It has two factors:
-//! - *perspective*: m of a receiver that faces both the light and the camera, what warps and splits can do something about;
-//! - *projection*: by how much the receiver's own slant makes that larger (or smaller), which no map of a view can change.
+//! At a point of a receiver, J = ∂texel/∂pixel is the Jacobian of the map with respect to the screen, along the plane
+//! of the receiver. Its smallest singular value is the number of texels over a pixel in the direction in which there
+//! are fewest; one over it, Lloyd's m, is the longest extent of a texel in the picture. It has two factors:
+//! - *perspective*: m of a receiver that faces both the light and the camera,
+//!   what warps and splits can do something about;
+//! - *projection*: by how much the receiver's own slant makes that larger (or smaller),
+//!   which no map of a view can change.
 //!
-//! [`footprint_at`] is for measuring and debug views, in f64; [`encoding::footprint`](crate::encoding::footprint) is its
-//! twin for shaders. [`Spread`] sums up many points; [`perspective_spread`] predicts one before anything is drawn.
+//! [`footprint_at`] is for measuring and debug views, in f64; [`encoding::footprint`](crate::encoding::footprint) is
+//! its twin for shaders. [`Spread`] sums up many points; [`perspective_spread`] predicts one before anything is drawn.
 //!
 //! # References
-//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: error m = texel over pixel.
+//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008:
+//!   error m = texel over pixel.
 //! - `MATH.md` section 8.
 
 use glam::{DVec2, DVec3, Vec4};
@@ -21,27 +24,29 @@ use crate::frame::{Footprint, ShadowView, ViewUniforms};
 /// The footprint of a map's texels at one point of a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointFootprint {
-    /// Texels over a pixel in the direction in which there are fewest, `σ_min(J)`: 1 or more means no aliasing, 0 that the
-    /// light only grazes the surface.
+    /// Texels over a pixel in the direction in which there are fewest, `σ_min(J)`: 1 or more means no aliasing, 0 that
+    /// the light only grazes the surface.
     pub texels_per_pixel: f64,
-    /// Longest extent of a texel in the picture, pixels: 1/`σ_min(J)`, Lloyd's m. Infinite where the light only grazes the
-    /// surface.
+    /// Longest extent of a texel in the picture, pixels: 1/`σ_min(J)`, Lloyd's m. Infinite where the light only grazes
+    /// the surface.
     pub pixels_per_texel: f64,
-    /// Its perspective part, pixels: what it is for a receiver that faces both light and camera. Finite, greater than 0.
+    /// Its perspective part, pixels: what it is for a receiver that faces both light and camera. Finite,
+    /// greater than 0.
     pub perspective: f64,
-    /// Its projection part: `pixels_per_texel` over `perspective`, 0 or more. 1 for a receiver that faces half-way between
-    /// light and camera, more for one that the light grazes.
+    /// Its projection part: `pixels_per_texel` over `perspective`, 0 or more. 1 for a receiver that faces half-way
+    /// between light and camera, more for one that the light grazes.
     pub projection: f64,
     /// Pixels that a texel covers, 1/|det J|: 0 where the surface is seen from its edge, infinite where the light only
     /// grazes it.
     pub area: f64,
 }
 
-/// The footprint of a map at a point of a receiver with a normal, both in render space; `side` is that of the map, texels.
+/// The footprint of a map at a point of a receiver with a normal, both in render space;
+/// `side` is that of the map, texels.
 ///
-/// `None` where there is none: outside of the part of the map that is drawn, behind the map's centre of projection or the
-/// eye, and for inputs that are not finite or a normal without direction. Whether the light is in front of the surface
-/// or behind it makes no difference. O(1), no allocation; kind of promise: exact for the plane, up to rounding.
+/// `None` where there is none: outside of the part of the map that is drawn, behind the map's centre of projection or
+/// the eye, and for inputs that are not finite or a normal without direction. Whether the light is in front of the
+/// surface or behind it makes no difference. O(1), no allocation; kind of promise: exact for the plane, up to rounding.
 #[must_use]
 pub fn footprint_at(
     view: &ViewUniforms,
@@ -56,7 +61,8 @@ pub fn footprint_at(
     let map = Gradients::at(view, side, position)?;
     let lens = Lens::at(camera, origin, position)?;
     let perspective = map.perspective(&lens)?;
-    // Steps from a pixel to the next on the receiver's plane, times the cosine to the line of sight: finite from its edge, too.
+    // Steps from a pixel to the next on the receiver's plane, times the cosine to the line of sight:
+    // finite from its edge, too.
     let facing = normal.dot(lens.sight);
     let on_plane = |axis: DVec3| axis * facing - lens.sight * normal.dot(axis);
     let [x, y] = [on_plane(lens.axes[0]) * lens.pixel.x, on_plane(lens.axes[1]) * lens.pixel.y];
@@ -180,12 +186,12 @@ impl Spread {
 /// twentieth, twice of it costs eight times the time.
 const BODY_GRID: [u32; 3] = [16, 12, 24];
 
-/// How the perspective part, pixels per texel, is spread over what a view serves: its part of the view volume, where every
-/// place in the picture and every octave of eye depth counts the same. `view` and `uniforms` are of one frame, `side` is that
-/// of its map.
+/// How the perspective part, pixels per texel, is spread over what a view serves: its part of the view volume, where
+/// every place in the picture and every octave of eye depth counts the same. `view` and `uniforms` are of one frame,
+/// `side` is that of its map.
 ///
-/// Kind of promise: typical. What is in view may crowd anywhere in it; `ShadowView::texel` has the extremes over the body.
-/// Cold path: allocates.
+/// Kind of promise: typical. What is in view may crowd anywhere in it; `ShadowView::texel` has the extremes over the
+/// body. Cold path: allocates.
 #[must_use]
 pub fn perspective_spread(
     view: &ShadowView,
@@ -222,7 +228,8 @@ pub(crate) struct Extremes {
     pub(crate) domain: [f32; 2],
 }
 
-/// The extremes over the vertices of a body; `squares` gives the squares of a texel's sides at a vertex, world units across the light.
+/// The extremes over the vertices of a body; `squares` gives the squares of a texel's sides at a vertex,
+/// world units across the light.
 ///
 /// Exact for surfaces that face both the light and the camera. O(vertices).
 pub(crate) fn extremes(

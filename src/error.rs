@@ -107,8 +107,8 @@ pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64, FitError> {
     if value.is_finite() { Ok(value) } else { Err(FitError::NotFinite { field, value }) }
 }
 
-/// Largest coordinate, length or depth, world units. f64 still tells an eighth of a unit apart there, and no product of the
-/// fit overflows f32; one light-month in metres is less.
+/// Largest coordinate, length or depth, world units. f64 still tells an eighth of a unit apart there, and no product of
+/// the fit overflows f32; one light-month in metres is less.
 pub(crate) const LARGEST: f64 = 1e15;
 
 /// `value` if it is finite and no larger than [`LARGEST`], else the error that names `field`.

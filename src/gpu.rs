@@ -33,8 +33,8 @@
 //! # }
 //! ```
 //!
-//! The casters' pipeline is the engine's own, with [`wgsl::CASTER`](crate::wgsl::CASTER) in its shader. Casters of uniform
-//! maps ([`MapShape::Affine`](crate::MapShape::Affine)) need no fragment shader. Casters of warped maps
+//! The casters' pipeline is the engine's own, with [`wgsl::CASTER`](crate::wgsl::CASTER) in its shader. Casters of
+//! uniform maps ([`MapShape::Affine`](crate::MapShape::Affine)) need no fragment shader. Casters of warped maps
 //! ([`MapShape::Projective`](crate::MapShape::Projective)) carry their linear depth from vertices to fragments, which
 //! write it:
 //!

@@ -1,18 +1,21 @@
-//! antumbra turns *camera + light + what the scene holds* into *light matrices + WGSL*, and leaves the drawing to the engine.
+//! antumbra turns *camera + light + what the scene holds* into *light matrices + WGSL*,
+//! and leaves the drawing to the engine.
 //!
 //! # Scope
-//! Shadow mapping in real time: how texels are laid out over what is in view, what they store, how they are read without acne
-//! or leaks, and what a scene does not need. Every technique is measured against ray-traced truth (feature `lab`).
+//! Shadow mapping in real time: how texels are laid out over what is in view, what they store, how they are read
+//! without acne or leaks, and what a scene does not need. Every technique is measured against ray-traced truth (feature
+//! `lab`).
 //!
 //! # Simplifications
 //! - One light at a time; engines call [`ShadowTechnique::fit`] once per frame and light.
 //! - The scene is known by bounds, not by triangles. Bounds are promises.
 //! - This version serves directional light with one map: uniform ([`techniques::ssm`], [`techniques::fsm`]) or warped
-//!   ([`techniques::psm`], [`techniques::tsm`], [`techniques::lispsm`], [`techniques::minimax`], [`techniques::least_error`]).
+//!   ([`techniques::psm`], [`techniques::tsm`], [`techniques::lispsm`], [`techniques::minimax`],
+//!   [`techniques::least_error`]).
 //!
 //! # Not here
-//! A renderer, a scene graph, a device. The core never names a GPU; with feature `wgpu` the module `gpu` brings textures, bind
-//! groups and passes as middleware, and still owns no device, submits nothing and polls nothing.
+//! A renderer, a scene graph, a device. The core never names a GPU; with feature `wgpu` the module `gpu` brings
+//! textures, bind groups and passes as middleware, and still owns no device, submits nothing and polls nothing.
 //!
 //! # One frame
 //! Camera → focus body → warp → window → ray coordinates → clip space → view → uniforms → shader, in one direction.
@@ -55,7 +58,7 @@
 //! | world and view space | right-handed; the view looks along −z; any direction may be up |
 //! | render space | world − `origin`: what emitted matrices and shader positions are relative to |
 //! | vectors, matrices | column vectors; a matrix is named `to_from` |
-//! | clip space of a map | x, y ∈ [−1, 1], z ∈ [0, 1], 0 nearest to the light; w = 1 in uniform maps, w ≥ 1 over what is in view in warped ones |
+//! | clip space of a map | x, y ∈ [−1, 1], z ∈ [0, 1], 0 nearest the light; w = 1 (uniform) or ≥ 1 in view (warped) |
 //! | texture coordinates | within a view's viewport u = x/2 + ½, v = ½ − y/2: row 0 is on top |
 //! | depth | linear along the light: `depth_from_render` equals clip z before the division by w |
 //! | `travel` | the unit vector along which light travels |

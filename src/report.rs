@@ -60,8 +60,8 @@ pub enum Why {
         /// The least extent that positions near the body can express, world units.
         widened_to: f64,
     },
-    /// What is in view is nearly the whole scene: a map of the scene, which does not move with the camera and can be kept
-    /// while the scene is still, has texels that are hardly larger.
+    /// What is in view is nearly the whole scene: a map of the scene, which does not move with the camera and can be
+    /// kept while the scene is still, has texels that are hardly larger.
     SceneIsInView {
         /// Area of the focused window over that of the scene's, 0.9 to 1.
         share: f64,
@@ -96,7 +96,8 @@ pub enum Why {
     },
 }
 
-/// One line of [`ShadowFrame::left_out`](crate::ShadowFrame::left_out). `Display` gives a sentence for an overlay or a log.
+/// One line of [`ShadowFrame::left_out`](crate::ShadowFrame::left_out).
+/// `Display` gives a sentence for an overlay or a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftOut {
     /// What was left out.

@@ -107,8 +107,9 @@ pub struct Scene<'a> {
     pub objects: &'a [Object],
     /// The eye depths that are visible at all (the shadow distance, or the range of last frame's depth buffer).
     pub visible_depth: Option<DepthRange>,
-    /// Positions of surfaces that are seen, world space: a few hundred, spread evenly over the picture (pixels of last frame's depth buffer).
-    /// They steer how strong a warp is, and nothing else: no shadow is lost where they are old, few, or wrong. None is fine.
+    /// Positions of surfaces that are seen, world space: a few hundred, spread evenly over the picture (pixels of last
+    /// frame's depth buffer). They steer how strong a warp is, and nothing else: no shadow is lost where they are old,
+    /// few, or wrong. None is fine.
     pub visible_points: &'a [DVec3],
 }
 

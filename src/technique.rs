@@ -19,8 +19,8 @@ pub struct FitInput<'a> {
     pub scene: Scene<'a>,
     /// The texels that may be used.
     pub map: MapBudget,
-    /// World position of the origin of render space, the space of the emitted matrices. For small worlds zero; for large
-    /// ones the eye, or whatever the engine subtracts before it narrows positions to f32.
+    /// World position of the origin of render space, the space of the emitted matrices. For small worlds zero; for
+    /// large ones the eye, or whatever the engine subtracts before it narrows positions to f32.
     pub origin: DVec3,
     /// Last frame of the same light: history is an input. No technique of this version reads it.
     pub previous: Option<&'a ShadowFrame>,

@@ -174,7 +174,8 @@ impl Shader {
         Ok(text)
     }
 
-    /// Metal shading language. Resources have placeholder bindings: engines that need numbers write `module` themselves.
+    /// Metal shading language. Resources have placeholder bindings:
+    /// engines that need numbers write `module` themselves.
     ///
     /// # Errors
     /// The shader needs something that MSL lacks.
@@ -213,8 +214,8 @@ impl Shader {
         Ok(GlslShader { text, samplers, blocks })
     }
 
-    /// GLSL of a library: every function that touches no global, behind an empty fragment `main`, which GLSL writers need
-    /// and engines cut off.
+    /// GLSL of a library: every function that touches no global, behind an empty fragment `main`, which GLSL writers
+    /// need and engines cut off.
     ///
     /// # Errors
     /// Something that GLSL lacks.

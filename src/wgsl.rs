@@ -85,14 +85,15 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     fragments
 }
 
-/// The caster stage alone, for the shader of a depth pass: `antumbra_caster(clip_from_render, position)`, and for warped
-/// maps `antumbra_caster_depth(depth_from_render, position)`, a varying that the fragment stage writes as its depth.
+/// The caster stage alone, for the shader of a depth pass: `antumbra_caster(clip_from_render, position)`, and for
+/// warped maps `antumbra_caster_depth(depth_from_render, position)`,
+/// a varying that the fragment stage writes as its depth.
 pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 
 /// The debug view of aliasing, for engines that ask for it: append it to the text of [`module`] or [`library`].
-/// `antumbra_footprint(view, side, position, d_position_dx, d_position_dy)` gives the texels over a pixel, of which 1 or more
-/// mean no aliasing; `antumbra_footprint_colour(texels_per_pixel)` gives an sRGB colour of that. The derivatives are
-/// `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`.
+/// `antumbra_footprint(view, side, position, d_position_dx, d_position_dy)` gives the texels over a pixel, of which 1
+/// or more mean no aliasing; `antumbra_footprint_colour(texels_per_pixel)` gives an sRGB colour of that. The
+/// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");

@@ -295,7 +295,8 @@ proptest! {
     fn what_is_near_a_plane_shades_it_in_warped_maps(
         case in warped(), pixels in prop::collection::vec(prop::array::uniform2(0.0..1.0_f64), 20),
     ) {
-        // Depth over w falls towards the base line, and so the other law's bias is larger: by the depth itself times the growth of w.
+        // Depth over w falls towards the base line, and so the other law's bias is larger:
+        // by the depth itself times the growth of w.
         let case = Warped { remix: Remix { depth: DepthLaw::Linear, ..case.remix }, ..case };
         let Some(frame) = case.frame() else { return Ok(()) };
         let Some(point) = pixels.into_iter().find_map(|pixel| case.seen(pixel)) else { return Ok(()) };

@@ -1,5 +1,5 @@
-//! The command lines of `mask` and `compare`, tried as a new user would: bad input gives one line that names the problem and what
-//! is legal, exit code 2, and leaves nothing behind; good input gives what was promised.
+//! The command lines of `mask` and `compare`, tried as a new user would: bad input gives one line that names the
+//! problem and what is legal, exit code 2, and leaves nothing behind; good input gives what was promised.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,6 +1,9 @@
 //! No switch, pop or jump: maps follow the camera and the light in steps as small as theirs.
 
+mod common;
+
 use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, techniques};
+use common::dice::Dice;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4Swizzles};
 
 /// Steps of a path.
@@ -9,30 +12,6 @@ const STEPS: usize = 64;
 const SIDE: u32 = 1024;
 /// Neighbours on each side that a step is compared with.
 const NEIGHBOURS: usize = 6;
-
-/// Numbers that look random and are the same every time.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        // Steele, Lea & Flood 2014, SplitMix64.
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.roll()
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = self.between(-1.0, 1.0);
-        let around = self.between(0.0, core::f64::consts::TAU);
-        DVec3::new(around.cos(), around.sin(), 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z
-    }
-}
 
 /// A camera that flies and turns, and a sun that moves, smoothly.
 #[derive(Clone, Debug)]
@@ -50,7 +29,7 @@ struct Path {
 impl Path {
     /// Every third path turns the view through the direction of light, exactly or nearly.
     fn new(seed: usize) -> Self {
-        let mut dice = Dice(seed as u64);
+        let mut dice = Dice::new(seed as u64);
         let size = DVec3::new(dice.between(20.0, 200.0), dice.between(2.0, 40.0), dice.between(20.0, 200.0));
         let eye = DVec3::new(dice.between(-0.4, 0.4), dice.between(0.05, 0.6), dice.between(-0.4, 0.4)) * size;
         let mut path = Self {

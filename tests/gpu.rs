@@ -48,10 +48,16 @@ impl Stage {
         ShadowMaps::new(self.gpu.device(), &descriptor).unwrap()
     }
 
-    fn picture(&self, technique: &Remix, camera: Camera, side: u32) -> Vec<u8> {
+    /// A frame, its maps, and what draws it.
+    fn ready(&self, technique: &Remix, camera: Camera, side: u32) -> (ShadowFrame, ShadowMaps, Renderer) {
         let frame = self.fit(technique, camera, side);
         let maps = self.maps(&frame, side);
         let renderer = Renderer::new(&self.gpu, frame.wgsl);
+        (frame, maps, renderer)
+    }
+
+    fn picture(&self, technique: &Remix, camera: Camera, side: u32) -> Vec<u8> {
+        let (frame, maps, renderer) = self.ready(technique, camera, side);
         let options = RenderOptions::default();
         renderer.render(&self.gpu, &self.scene, &camera, &frame, &maps, &options).unwrap().mask
     }
@@ -167,7 +173,8 @@ fn warped() -> [Remix; 5] {
     [fixed(0.4), fixed(20.0), techniques::tsm(), techniques::lispsm(), Remix { guard: false, ..techniques::psm() }]
 }
 
-/// A map holds the linear depth of the first surface along the light, and 1 where there is none, whatever it is warped by.
+/// A map holds the linear depth of the first surface along the light, and 1 where there is none,
+/// whatever it is warped by.
 #[test]
 fn the_map_holds_analytic_depth() {
     let Some(stage) = Stage::new(DVec3::ZERO) else { return };
@@ -180,9 +187,7 @@ fn the_map_holds_analytic_depth() {
 /// Checks one map texel by texel; gives back the strength of its warp.
 fn holds_analytic_depth(stage: &Stage, technique: &Remix) -> f32 {
     let (camera, side) = (support::camera(SIZE), 128_u32);
-    let frame = stage.fit(technique, camera, side);
-    let maps = stage.maps(&frame, side);
-    let renderer = Renderer::new(&stage.gpu, frame.wgsl);
+    let (frame, maps, renderer) = stage.ready(technique, camera, side);
     renderer.render(&stage.gpu, &stage.scene, &camera, &frame, &maps, &RenderOptions::default()).unwrap();
     let map = read_depth(&stage.gpu, &maps).unwrap();
     let clip_from_render = frame.views[0].clip_from_render.as_dmat4();
@@ -211,8 +216,8 @@ fn holds_analytic_depth(stage: &Stage, technique: &Remix) -> f32 {
             let at = (start + travel * distance).as_vec3();
             let expected = frame.views[0].depth_from_render.dot(at.extend(1.0));
             hits += 1;
-            // The rasteriser snaps vertices to 1/256 texel; a plane's depth moves by that share of its slope, which grows with
-            // the size of texels.
+            // The rasteriser snaps vertices to 1/256 texel; a plane's depth moves by that share of its slope, which
+            // grows with the size of texels.
             let w = clip_from_render.row(3).dot(at.as_dvec3().extend(1.0)) as f32;
             strays += usize::from((stored - expected.min(1.0)).abs() > 1e-4 * w.max(1.0));
         }
@@ -267,9 +272,7 @@ fn misfits_are_errors() {
 fn nothing_is_lit() {
     let Some(stage) = Stage::new(DVec3::ZERO) else { return };
     let camera = support::camera(SIZE);
-    let mut frame = stage.fit(&Remix::default(), camera, 64);
-    let maps = stage.maps(&frame, 64);
-    let renderer = Renderer::new(&stage.gpu, frame.wgsl);
+    let (mut frame, maps, renderer) = stage.ready(&Remix::default(), camera, 64);
     let options = RenderOptions::default();
     let empty = GpuScene::upload(&stage.gpu, &SceneModel::default(), DVec3::ZERO).unwrap();
     let image = renderer.render(&stage.gpu, &empty, &camera, &frame, &maps, &options).unwrap();
@@ -298,9 +301,7 @@ fn nothing_is_lit() {
 fn times_are_sane() {
     let Some(stage) = Stage::new(DVec3::ZERO) else { return };
     let camera = support::camera(UVec2::new(640, 480));
-    let frame = stage.fit(&Remix::default(), camera, 1024);
-    let maps = stage.maps(&frame, 1024);
-    let renderer = Renderer::new(&stage.gpu, frame.wgsl);
+    let (frame, maps, renderer) = stage.ready(&Remix::default(), camera, 1024);
     let start = std::time::Instant::now();
     let options = RenderOptions { repetitions: 5 };
     let image = renderer.render(&stage.gpu, &stage.scene, &camera, &frame, &maps, &options).unwrap();
@@ -317,9 +318,7 @@ fn times_are_sane() {
 fn races_are_run() {
     let Some(stage) = Stage::new(DVec3::ZERO) else { return };
     let camera = support::camera(UVec2::new(640, 480));
-    let frame = stage.fit(&Remix::default(), camera, 1024);
-    let maps = stage.maps(&frame, 1024);
-    let renderer = Renderer::new(&stage.gpu, frame.wgsl);
+    let (frame, maps, renderer) = stage.ready(&Remix::default(), camera, 1024);
     let race = renderer.race(&stage.gpu, &stage.scene, &camera, &frame, &maps, 11).unwrap();
     eprintln!("{} ({}): {race:?}", stage.gpu.adapter(), stage.gpu.backend());
     let receivers = [race.receivers_ratio, race.receivers_bare_ratio, race.receivers_vertex_ratio];

@@ -1,5 +1,5 @@
-//! Pictures against ray-traced truth, and the two renderers against each other, on the shared cases (where `ANTUMBRA_SCENES` names
-//! the folder of scenes beside them) and on built-in viewpoints.
+//! Pictures against ray-traced truth, and the two renderers against each other, on the shared cases (where
+//! `ANTUMBRA_SCENES` names the folder of scenes beside them) and on built-in viewpoints.
 
 mod support;
 
@@ -42,15 +42,16 @@ fn scores(backend: &mut Backend, assignment: &Assignment, case: &Case, remix: &R
 
 /// Most interior false shadow (acne) and interior leak of a focused map of 2048 texels, shares of the valid pixels.
 ///
-/// They hold with the edges of `metrics`, which count shadows thinner than a pixel. With edges of the centre truth alone they do
-/// not: acne 1.2e-4 (columns-row), 3.4e-4 (treeline-dueling, treeline-ground), leak 1.3e-3 (treeline-ground);
-/// `tests/resolution.rs` shows how much of that is resolution.
+/// They hold with the edges of `metrics`, which count shadows thinner than a pixel. With edges of the centre truth
+/// alone they do not: acne 1.2e-4 (columns-row), 3.4e-4 (treeline-dueling, treeline-ground), leak 1.3e-3
+/// (treeline-ground); `tests/resolution.rs` shows how much of that is resolution.
 const MOST_ACNE: f64 = 1e-4;
 const MOST_LEAK: f64 = 1e-3;
 /// Interior false shadow of the perspective map, whose far texels are the largest of all.
 const MOST_FAR_TEXELS: f64 = 1e-2;
 
-/// No acne and no leaks without any tuning; a focused map is never worse than the standard one; both get better with size.
+/// No acne and no leaks without any tuning; a focused map is never worse than the standard one;
+/// both get better with size.
 #[test]
 fn focused_maps_meet_their_bounds() {
     let mut backend = Backend::Cpu;
@@ -87,9 +88,10 @@ fn focused_maps_meet_their_bounds() {
 
 /// Warps bring no acne, as printed and guarded, with either depth law.
 ///
-/// All but the perspective map meet the bound of the focused one. Its strength, up to 240 on these cases, makes far texels that cover many
-/// pixels: an edge that is off by one of those is far from where an edge should be, and counts as interior (up to 8e-3 as printed, 3e-4
-/// guarded). That no plane shadows itself under it either is shown in `tests/acne.rs`.
+/// All but the perspective map meet the bound of the focused one. Its strength, up to 240 on these cases, makes far
+/// texels that cover many pixels: an edge that is off by one of those is far from where an edge should be, and counts
+/// as interior (up to 8e-3 as printed, 3e-4 guarded).
+/// That no plane shadows itself under it either is shown in `tests/acne.rs`.
 #[test]
 fn warped_maps_meet_the_bounds_of_focused_ones() {
     let mut backend = Backend::Cpu;
@@ -139,8 +141,8 @@ fn wide_filters_raise_no_acne() {
                 scores.false_interior,
                 scores.leak_interior
             );
-            // A box five texels wide moves edges of coarse texels by more than the two pixels that count as an edge, and so
-            // adds some hundredths of a percent; self-shadowing would add percents.
+            // A box five texels wide moves edges of coarse texels by more than the two pixels that count as an edge,
+            // and so adds some hundredths of a percent; self-shadowing would add percents.
             let most = 3.0 * plain.false_interior + 3.0 * MOST_ACNE;
             assert!(scores.false_interior <= most, "{} {}: acne {}", case.name, filter.name(), scores.false_interior);
         }

@@ -1,11 +1,8 @@
 //! Third-party glTF files load to what their descriptions say.
 
-use std::path::PathBuf;
+mod support;
 
 use antumbra::lab::gltf;
-
-/// Names the folder of the third-party scenes.
-const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
 
 /// File, triangles, and bounds to the digits that are known.
 const SCENES: [(&str, usize, [f64; 3], [f64; 3]); 10] = [
@@ -26,10 +23,7 @@ const BOUNDS_TOLERANCE: f64 = 0.51;
 
 #[test]
 fn third_party_scenes_load() {
-    let Some(scenes) = std::env::var_os(SCENES_VARIABLE).map(PathBuf::from) else {
-        println!("SKIPPED third_party_scenes_load: set {SCENES_VARIABLE} to the folder of the shared scenes");
-        return;
-    };
+    let Some(scenes) = support::scenes() else { return };
     for (name, triangles, least, greatest) in SCENES {
         let scene = gltf::load(&scenes.join(name).with_extension("glb")).unwrap_or_else(|error| panic!("{error}"));
         let (found_least, found_greatest) = scene.bounds().expect("it has triangles");

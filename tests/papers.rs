@@ -143,7 +143,8 @@ fn minimax(corners: &[(DVec2, f64); 8], frame: &WarpFrame) -> (f64, f64) {
     if worst(best) < worst(0.0) { (best, worst(best)) } else { (0.0, worst(0.0)) }
 }
 
-/// Angle, near to far; published n with its two spacings; minimax n (none: uniform) with its one; digits after the point.
+/// Angle, near to far; published n with its two spacings; minimax n (none: uniform) with its one;
+/// digits after the point.
 type Tilted = (f64, f64, [f64; 3], Option<f64>, f64, [i32; 5]);
 
 /// Tilted light: the published n is worse than uniform where light is less than half the field of view off the view.
@@ -186,8 +187,8 @@ fn tilted_light() {
     }
 }
 
-/// Perspective shadow maps: where directional light goes in post-perspective space (60°, square, 1 to 50), in front of the viewer and
-/// behind; it lies on the plane z = f/(f − n).
+/// Perspective shadow maps: where directional light goes in post-perspective space (60°, square, 1 to 50), in front of
+/// the viewer and behind; it lies on the plane z = f/(f − n).
 #[test]
 fn light_in_post_perspective_space() {
     let tangent = 30_f64.to_radians().tan();

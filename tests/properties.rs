@@ -1,12 +1,11 @@
-//! What every fit promises, over hostile inputs: nothing that can be shadowed is outside its map, nothing that can throw a
-//! shadow is culled, nothing is NaN, equal inputs give equal bits, snapped maps move by whole texels.
+//! What every fit promises, over hostile inputs: nothing that can be shadowed is outside its map, nothing that can
+//! throw a shadow is culled, nothing is NaN, equal inputs give equal bits, snapped maps move by whole texels.
 
 mod common;
 
-use std::sync::atomic::{AtomicU32, Ordering};
-
 use antumbra::{Aabb, FitError, Light, Remix, ShadowFrame, ShadowTechnique, Stabilise, techniques};
-use common::{Inputs, direction, in_view, inputs, point_in, shares, towards_light, view_point};
+use common::tally::Tally;
+use common::{Inputs, all_finite, caster, direction, in_view, inputs, receiver, shares, sound};
 use glam::{DVec3, DVec4};
 use proptest::prelude::*;
 
@@ -24,28 +23,14 @@ fn clip(frame: &ShadowFrame, inputs: &Inputs, position: DVec3) -> glam::Vec4 {
     frame.views[0].clip_from_render * (position - inputs.origin).as_vec3().extend(1.0)
 }
 
-fn all_finite(frame: &ShadowFrame) -> bool {
-    let uniforms: &[f32] = bytemuck::cast_slice(&frame.uniforms.views);
-    uniforms.iter().all(|value| value.is_finite())
-        && frame.views.iter().all(|view| {
-            view.clip_from_render.is_finite()
-                && view.depth_from_render.is_finite()
-                && view.texel.world[0] > 0.0
-                && view.texel.world[1].is_finite()
-                && view.texel.pixels.max.is_finite()
-                && view.domain.iter().all(|depth| depth.is_finite())
-                && view.cull.planes().iter().all(|plane| plane.is_finite())
-        })
-}
-
 /// Cases of the main property, and those of them in which a receiver that something can shadow was in view.
-static CASES: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
+static CASES: Tally<2> = Tally::new();
 
 /// The main property; then, that its generator reaches what it is about in at least a sixth of the cases.
 #[test]
 fn nothing_is_lost() {
     nothing_is_lost_over_hostile_inputs();
-    let [cases, reached] = CASES.each_ref().map(|count| count.load(Ordering::Relaxed));
+    let [cases, reached] = CASES.read();
     println!("{reached} of {cases} cases had a shadowed receiver in view");
     assert!(cases >= 200_000 && reached >= cases / 6);
 }
@@ -53,43 +38,30 @@ fn nothing_is_lost() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200_000, max_shrink_iters: 2_000, ..ProptestConfig::default() })]
 
-    /// The main promise, over 200,000 inputs: receivers that a caster can shadow are inside the map with w > 0 and depth in
-    /// [0, 1]; such casters pass the cull volume and are not clipped away; numbers are finite; bits are equal; no views
-    /// means a reason; the orientation is kept.
-    fn nothing_is_lost_over_hostile_inputs(inputs in inputs(), remix in remixes(), receiver in shares(), along in 0.0..=1.0_f64) {
-        CASES[0].fetch_add(1, Ordering::Relaxed);
-        let frame = remix.fit(&inputs.fit_input()).unwrap();
-        prop_assert!(all_finite(&frame), "{frame:?}");
-        let again = remix.fit(&inputs.fit_input()).unwrap();
-        prop_assert_eq!(bytemuck::bytes_of(&frame.uniforms), bytemuck::bytes_of(&again.uniforms));
-        prop_assert_eq!(&frame, &again);
-        prop_assert!(!frame.views.is_empty() || !frame.left_out.is_empty());
+    /// The main promise, over 200,000 inputs: receivers that a caster can shadow are inside the map with w > 0 and
+    /// depth in [0, 1]; such casters pass the cull volume and are not clipped away; numbers are finite; bits are equal;
+    /// no views means a reason; the orientation is kept.
+    fn nothing_is_lost_over_hostile_inputs(inputs in inputs(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
+        CASES.count(0);
+        let frame = sound(remix, &inputs)?;
         if inputs.receivers.is_empty() || inputs.casters.is_empty() {
             prop_assert!(frame.views.is_empty());
             return Ok(());
         }
         // A receiver in view that a caster can shadow, and that caster.
         // (in every fourth case: anywhere in the receivers' bounds).
-        let receiver = if along < 0.25 {
-            point_in(&inputs.receivers, receiver)
-        } else {
-            view_point(&inputs.camera, receiver).clamp(inputs.receivers.min, inputs.receivers.max)
-        };
+        let receiver = receiver(&inputs, shares, along < 0.25);
         let seen = remix.warp == antumbra::Warp::Uniform || in_view(&inputs, receiver);
-        let boxes = inputs.caster_boxes();
-        let shadowing = |bounds: &Aabb| Some((*bounds, towards_light(bounds, receiver, inputs.travel)?));
-        let Some((casters, (first, last))) = boxes.iter().find_map(shadowing) else { return Ok(()) };
+        let Some(caster) = caster(&inputs, receiver, along) else { return Ok(()) };
         if !seen {
             return Ok(());
         }
-        CASES[1].fetch_add(1, Ordering::Relaxed);
+        CASES.count(1);
         prop_assert_eq!(frame.views.len(), 1, "{:?}", frame.left_out);
         let at = clip(&frame, &inputs, receiver);
         prop_assert_eq!(at.w, 1.0);
         prop_assert!(at.truncate().truncate().abs().max_element() <= 1.0, "receiver at {at}");
         prop_assert!((0.0..=1.0).contains(&at.z), "receiver at {at}");
-        let caster = receiver - inputs.travel * (first + along * (last - first));
-        let caster = caster.clamp(casters.min, casters.max);
         prop_assert!(frame.views[0].cull.may_cast(&Aabb::new(caster, caster)), "culled {caster}");
         let at = clip(&frame, &inputs, caster);
         prop_assert!(at.z >= 0.0, "the near plane cuts {caster} at {at}");

@@ -25,8 +25,8 @@ fn whys(frame: &ShadowFrame) -> Vec<(Part, Why)> {
     frame.left_out.iter().map(|cut| (cut.part, cut.why)).collect()
 }
 
-/// Casters and receivers in one box: rounding of its silhouette planes was reported as "outside the shadow of the casters", and
-/// hid the cut that the visible depth made.
+/// Casters and receivers in one box: rounding of its silhouette planes was reported as "outside the shadow of the
+/// casters", and hid the cut that the visible depth made.
 #[test]
 fn reasons_are_true_and_none_hides_another() {
     let scene = Scene { visible_depth: Some(DepthRange { near: 5.0, far: 50.0 }), ..Scene::within(room(300.0)) };
@@ -233,7 +233,8 @@ fn a_tower_behind_the_camera_casts() {
     assert!(!frame.views[0].cull.may_cast(&aside));
 }
 
-/// A point 10,000 km out, snapped by a texel of 1e-12: the grid rounded to whole steps of f64, and the window missed the point.
+/// A point 10,000 km out, snapped by a texel of 1e-12: the grid rounded to whole steps of f64,
+/// and the window missed the point.
 #[test]
 fn still_windows_hold_points_far_out() {
     let place = DVec3::new(3e6, 8e6, -5e6);
@@ -248,8 +249,8 @@ fn still_windows_hold_points_far_out() {
     }
 }
 
-/// A caster 48,000 km from the origin of the world and a few nanometres beside its window: culled, because world positions in f64
-/// are themselves only good to seven nanometres there.
+/// A caster 48,000 km from the origin of the world and a few nanometres beside its window: culled, because world
+/// positions in f64 are themselves only good to seven nanometres there.
 #[test]
 fn casters_at_the_rim_far_out_are_kept() {
     let receiver = DVec3::new(-38_113_182.842_577_58, -29_255_358.730_032_906, 25_475_893.878_540_173);

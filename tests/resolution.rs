@@ -1,5 +1,6 @@
-//! How much of a map's error is its resolution, on the shared cases (where `ANTUMBRA_SCENES` names the folder of scenes beside
-//! them): the library's masks beside those of ideal lookups in the same texels. `docs/EDGES.md` says what the tables mean.
+//! How much of a map's error is its resolution, on the shared cases (where `ANTUMBRA_SCENES` names the folder of scenes
+//! beside them): the library's masks beside those of ideal lookups in the same texels.
+//! `docs/EDGES.md` says what the tables mean.
 
 mod support;
 
@@ -61,8 +62,8 @@ fn over_cases(mut check: impl FnMut(&str, &Place)) {
     }
 }
 
-/// Most false shadow and leak of a focused map of 2048 texels away from strict edges and not explained by a texel, shares of
-/// the valid pixels: what is asked of acne and bleeding.
+/// Most false shadow and leak of a focused map of 2048 texels away from strict edges and not explained by a texel,
+/// shares of the valid pixels: what is asked of acne and bleeding.
 const MOST_ACNE: f64 = 1e-4;
 const MOST_LEAK: f64 = 1e-3;
 
@@ -83,8 +84,9 @@ impl Wrong {
     }
 }
 
-/// Sorts what is wrong away from strict edges: false shadow, and leaks. Nothing explains false shadow where every surface
-/// within a texel of the receiver is lit, and leaks where the receiver's plane is in shadow all over within a texel.
+/// Sorts what is wrong away from strict edges: false shadow, and leaks. Nothing explains false shadow where every
+/// surface within a texel of the receiver is lit, and leaks where the receiver's plane is in shadow all over within a
+/// texel.
 fn away_from_edges(place: &Place, frame: &ShadowFrame, mask: &[f32], ideal: &[f32]) -> [Wrong; 2] {
     let (truth, origin) = (place.truth, place.setting.origin);
     let near = near_edges(truth, Edges::Centre);
@@ -144,8 +146,8 @@ const PLACEMENTS: u32 = 4;
 /// Sizes of maps, texels.
 const SIZES: [u32; 3] = [512, 1024, 2048];
 
-/// Parts of a texel by which a map is moved, −½ to ½: as fitted first, then evenly spread however many there are (the R2
-/// sequence: M. Roberts, *The unreasonable effectiveness of quasirandom sequences*, 2018).
+/// Parts of a texel by which a map is moved, −½ to ½: as fitted first, then evenly spread however many there are (the
+/// R2 sequence: M. Roberts, *The unreasonable effectiveness of quasirandom sequences*, 2018).
 fn placement(index: u32) -> DVec2 {
     let step = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
     let at = step * f64::from(index);
@@ -175,8 +177,8 @@ impl Spread {
     }
 }
 
-/// Larger maps are better, and focused maps than standard ones: not in each placement of their texels, but on average over
-/// placements.
+/// Larger maps are better, and focused maps than standard ones: not in each placement of their texels, but on average
+/// over placements.
 #[test]
 fn errors_fall_with_size_on_average_over_placements() {
     let count = std::env::var(PLACEMENTS_VARIABLE).map_or(PLACEMENTS, |n| n.parse().expect("a number of placements"));

@@ -1,4 +1,5 @@
-//! The shape of the source: levels, headings, names, and the files at the top. What a rule forbids is shown with its file.
+//! The shape of the source: levels, headings, names, and the files at the top.
+//! What a rule forbids is shown with its file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,6 +47,22 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// The files of the library. Those named `tests.rs` are left out, each of which the file above it has to declare as a
+/// test.
+fn sources() -> Vec<PathBuf> {
+    let (tests, sources): (Vec<_>, Vec<_>) =
+        files(Path::new(SOURCE)).into_iter().partition(|path| path.ends_with("tests.rs"));
+    assert!(!tests.is_empty(), "the test looks for tests.rs");
+    for path in tests {
+        let folder = path.parent().expect("a folder");
+        let above = [folder.with_extension("rs"), folder.join("mod.rs")].into_iter().find(|above| above.exists());
+        let text = fs::read_to_string(above.expect("the file above")).expect("readable");
+        let declared = text.rsplit_once("#[cfg(test)]").is_some_and(|(_, end)| end.trim_end().ends_with("mod tests;"));
+        assert!(declared, "{} is more than a test", path.display());
+    }
+    sources
+}
+
 /// The module a source file belongs to, by its first folder or its name.
 fn module(path: &Path) -> String {
     let inside = path.strip_prefix(SOURCE).expect("inside src");
@@ -67,7 +84,7 @@ fn code(path: &Path) -> String {
 #[test]
 fn files_import_lower_levels_only() {
     let mut imports = 0;
-    for path in files(Path::new(SOURCE)) {
+    for path in sources() {
         let own = module(&path);
         if own == "lib" {
             continue;
@@ -98,7 +115,7 @@ fn methods_name_their_references() {
         if !folder.exists() {
             continue;
         }
-        for path in files(&folder).into_iter().filter(|path| !path.ends_with("mod.rs")) {
+        for path in sources().into_iter().filter(|path| path.starts_with(&folder) && !path.ends_with("mod.rs")) {
             let text = fs::read_to_string(&path).expect("readable");
             assert!(text.contains("//! # References"), "{} names no references", path.display());
         }
@@ -107,7 +124,7 @@ fn methods_name_their_references() {
 
 #[test]
 fn matrices_are_named_to_from() {
-    for path in files(Path::new(SOURCE)) {
+    for path in sources() {
         for (number, line) in code(&path).lines().enumerate() {
             for kind in [": Mat4", ": DMat4", ": &Mat4", ": &DMat4"] {
                 let Some(before) = line.split(kind).next().filter(|before| before.len() < line.len()) else { continue };
@@ -148,7 +165,7 @@ fn nothing_is_left_undone() {
 
 #[test]
 fn the_core_stays_small_and_free_of_the_gpu() {
-    for path in files(Path::new(SOURCE)) {
+    for path in sources() {
         if matches!(module(&path).as_str(), "gpu" | "lab" | "transpile") {
             continue;
         }

@@ -1,4 +1,5 @@
-//! The trapezoid: the published chain of eight matrices and the closed form are one map, and it does what the paper wants.
+//! The trapezoid: the published chain of eight matrices and the closed form are one map,
+//! and it does what the paper wants.
 
 use antumbra::warp::homography::{LINE_80_PERCENT, WarpFrame};
 use antumbra::warp::trapezoid::{Trapezoid, chain};
@@ -29,7 +30,8 @@ impl Random {
     }
 }
 
-/// What a light may see of a frustum: eight points, near ones about one centre and far ones about another, and the point in focus.
+/// What a light may see of a frustum: eight points, near ones about one centre and far ones about another,
+/// and the point in focus.
 struct Seen {
     centres: [DVec2; 2],
     hull: [DVec2; 8],
@@ -65,8 +67,8 @@ fn plane(map_from_light: DMat4) -> DMat3 {
     DMat3::from_cols_array_2d(&rows.map(|row| [row.x, row.y, row.w])).transpose()
 }
 
-/// Largest difference of two homographies after giving both W = 1 at `top`: each row against the size of its terms `reach` away
-/// from the origin of coordinates.
+/// Largest difference of two homographies after giving both W = 1 at `top`: each row against the size of its terms
+/// `reach` away from the origin of coordinates.
 fn difference(map_from_a: DMat3, map_from_b: DMat3, top: DVec2, reach: f64) -> f64 {
     let scaled = |map_from_plane: DMat3| {
         let unit = map_from_plane * (1.0 / (map_from_plane * top.extend(1.0)).z);
@@ -81,8 +83,8 @@ fn reach(corners: &[DVec2; 4]) -> f64 {
     corners.iter().map(|corner| corner.length()).fold(0.0, f64::max)
 }
 
-/// What rounding costs: coordinates as large as the reach are subtracted to give the top line, λ, and W = 1 on the top line, and q is
-/// as uncertain as the sides are parallel.
+/// What rounding costs: coordinates as large as the reach are subtracted to give the top line, λ, and W = 1 on the top
+/// line, and q is as uncertain as the sides are parallel.
 fn condition(trapezoid: &Trapezoid) -> f64 {
     let corners = trapezoid.corners();
     let least = corners[2].distance(corners[3]).min(trapezoid.frame.extent);
@@ -156,8 +158,8 @@ impl Errors {
     }
 }
 
-/// Both ways from corners to a map agree to 1e-12, and do what they are for, on 100,000 trapezoids with a condition of up to 1e4
-/// (nine in ten at least); beyond that, as far as their corners are known.
+/// Both ways from corners to a map agree to 1e-12, and do what they are for, on 100,000 trapezoids with a condition of
+/// up to 1e4 (nine in ten at least); beyond that, as far as their corners are known.
 #[test]
 fn chain_and_closed_form_are_one() {
     let mut random = Random(2004);

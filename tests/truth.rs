@@ -1,5 +1,7 @@
 //! The truth is held against what is known without it: published floors, exact shadows, all triangles tried one by one.
 
+mod support;
+
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
@@ -10,9 +12,6 @@ use antumbra::lab::metrics::Scores;
 use antumbra::lab::scene::{Cutout, SOLID, SceneModel};
 use antumbra::lab::truth::{Truth, TruthCache};
 use glam::{DVec2, DVec3};
-
-/// Names the folder of the third-party scenes; their cases lie in `../cases`.
-const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
 
 /// Case, root mean square and mean absolute error of the perfect hard-edged mask against the area truth, from an
 /// independent ray tracer.
@@ -36,10 +35,7 @@ const FLOOR_ROUNDING: f64 = 0.000_05;
 
 #[test]
 fn floors_match_published_scores() {
-    let Some(scenes) = std::env::var_os(SCENES_VARIABLE).map(PathBuf::from) else {
-        println!("SKIPPED floors_match_published_scores: set {SCENES_VARIABLE} to the folder of the shared scenes");
-        return;
-    };
+    let Some(scenes) = support::scenes() else { return };
     println!("{:<20} {:>8} {:>8} {:>7} {:>8} {:>8} {:>7}", "case", "rmse", "known", "off", "mae", "known", "off");
     let mut misses = Vec::new();
     for (name, known_rmse, known_mae) in FLOORS {
@@ -193,7 +189,8 @@ fn pixel_area(left: f64, top: f64, function: impl Fn(f64, f64) -> f64) -> f64 {
     parts.sum()
 }
 
-/// Seen straight from above, the shadow of a wall's straight edge is a half-plane, and each pixel's share of it is known.
+/// Seen straight from above, the shadow of a wall's straight edge is a half-plane,
+/// and each pixel's share of it is known.
 #[test]
 fn a_walls_shadow_covers_what_geometry_says() {
     let along = DVec3::new(1.0, 0.0, 0.3).normalize();

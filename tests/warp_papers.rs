@@ -1,11 +1,12 @@
 //! Warps as their papers want them: what a fit without guard emits, measured through the emitted matrix.
 
+mod common;
+
 use antumbra::warp::perspective::post_perspective_light;
 use antumbra::{
     Aabb, Camera, FitInput, Focus, Light, MapBudget, Part, Remix, Scene, ShadowFrame, ShadowTechnique, Warp, Why,
 };
-use std::sync::atomic::{AtomicU32, Ordering};
-
+use common::tally::Tally;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use proptest::prelude::*;
 
@@ -107,8 +108,9 @@ impl Emitted {
     }
 }
 
-/// `M_t` and `M_s` of `MATH.md` section 2 for one texel over the map: 1/(∂Y/∂u) and 1/(∂X/∂c) over eye depth, largest over the corners of
-/// the view, by differentiating the emitted matrix. Y is the map's coordinate that does not change across the axis.
+/// `M_t` and `M_s` of `MATH.md` section 2 for one texel over the map: 1/(∂Y/∂u) and 1/(∂X/∂c) over eye depth, largest
+/// over the corners of the view, by differentiating the emitted matrix.
+/// Y is the map's coordinate that does not change across the axis.
 fn worst_footprint(frame: &ShadowFrame, view: &View) -> [f64; 2] {
     let emitted = Emitted::of(frame, view);
     let mut worst = [0.0_f64; 2];
@@ -127,8 +129,8 @@ fn worst_footprint(frame: &ShadowFrame, view: &View) -> [f64; 2] {
     worst
 }
 
-/// The same for a warp along the view, whose strength alone is known: in the fitted form of `MATH.md` section 0, with side lines through
-/// the eye's image.
+/// The same for a warp along the view, whose strength alone is known: in the fitted form of `MATH.md` section 0, with
+/// side lines through the eye's image.
 fn worst_fitted(view: &View, strength: f64) -> f64 {
     let (axis, side) = (view.axis(), view.axis().cross(view.travel).normalize());
     let points = view.corners().map(|at| (at.dot(axis), at.dot(side), -at.z));
@@ -143,11 +145,7 @@ fn worst_fitted(view: &View, strength: f64) -> f64 {
 }
 
 /// Cases of a property that its condition let pass.
-static REACHED: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
-
-fn reached(property: usize) {
-    REACHED[property].fetch_add(1, Ordering::Relaxed);
-}
+static REACHED: Tally<4> = Tally::new();
 
 /// The conditions of the properties below let most cases pass.
 #[test]
@@ -155,7 +153,7 @@ fn properties_reach_what_they_are_about() {
     the_focus_is_on_the_80_percent_line();
     psm_is_the_view_of_the_light_in_post_perspective_space();
     minimax_has_the_least_worst_footprint();
-    let reached = REACHED.each_ref().map(|count| count.load(Ordering::Relaxed));
+    let reached = REACHED.read();
     println!(
         "80 % line {}, PSM {}, minimax {}, of which against PSM {}",
         reached[0], reached[1], reached[2], reached[3]
@@ -188,7 +186,7 @@ proptest! {
         if limited(&frame) || frame.views[0].warp_strength < 1e-2 {
             return Ok(());
         }
-        reached(0);
+        REACHED.count(0);
         let emitted = Emitted::of(&frame, &view);
         let focus = DVec3::NEG_Z * (view.near + f64::from(share) * (view.far - view.near));
         let y = emitted.paper_y(focus);
@@ -213,7 +211,7 @@ proptest! {
         if limited(&frame) {
             return Ok(());
         }
-        reached(1);
+        REACHED.count(1);
         let emitted = Emitted::of(&frame, &view);
         let tangent = view.tangent;
         let light = post_perspective_light([-tangent, tangent, -tangent, tangent], view.near, view.far, -view.travel);
@@ -235,8 +233,9 @@ proptest! {
         }
     }
 
-    /// Minimax: its worst footprint, max(`M_s`, `M_t`) over the corners of the view, is no larger than that of any other warp. Compared are
-    /// (a) emitted matrices without guard, each along its own axis, differentiated; (b) any strength at all along the view, fitted.
+    /// Minimax: its worst footprint, max(`M_s`, `M_t`) over the corners of the view, is no larger than that of any
+    /// other warp. Compared are (a) emitted matrices without guard, each along its own axis, differentiated; (b) any
+    /// strength at all along the view, fitted.
     fn minimax_has_the_least_worst_footprint(
         view in views(), share in 0.0..1.0_f32, log_strength in -3.0..2.0_f64, log_back in -3.0..3.0_f64,
     ) {
@@ -246,7 +245,7 @@ proptest! {
             (along.max(across), f64::from(frame.views[0].warp_strength))
         };
         let (ours, strength) = worst(Warp::Minimax);
-        reached(2);
+        REACHED.count(2);
         // What is read off the matrix is what was minimised.
         let fitted = worst_fitted(&view, strength);
         prop_assert!((ours / fitted - 1.0).abs() < 2e-3, "{ours} measured, {fitted} fitted, strength {strength}");
@@ -264,7 +263,7 @@ proptest! {
                 _ => worst(warp),
             };
             if matches!(warp, Warp::Perspective { .. }) {
-                reached(3);
+                REACHED.count(3);
             }
             prop_assert!(ours <= theirs * 1.002, "{ours} at {strength}, {warp:?} {theirs} at {theirs_strength}");
         }
@@ -290,7 +289,8 @@ proptest! {
     }
 }
 
-/// PSM with light that crosses the eye plane: the map moves by as much as the light turns, with no jump where ℓ'_w changes its sign.
+/// PSM with light that crosses the eye plane: the map moves by as much as the light turns,
+/// with no jump where ℓ'_w changes its sign.
 #[test]
 fn psm_is_continuous_across_the_eye_plane() {
     let largest_step = |steps: u32, guard: bool| {

@@ -42,7 +42,8 @@ fn is_inside(clip: Vec4) -> bool {
     clip.w > 0.0 && clip.truncate().truncate().abs().max_element() <= clip.w
 }
 
-/// A corner of the window lay beyond the horizon, where it is behind the light's side of everything: the near plane cut casters off.
+/// A corner of the window lay beyond the horizon, where it is behind the light's side of everything:
+/// the near plane cut casters off.
 #[test]
 fn windows_that_reach_the_horizon_keep_their_casters() {
     let axes = [
@@ -176,7 +177,8 @@ fn casters_of_slivers_are_kept() {
     assert!(frame.views[0].cull.may_cast(&Aabb::new(caster, caster)));
 }
 
-/// Casters thousands of times farther away than the view is deep came to lie behind the centre of projection, for want of digits.
+/// Casters thousands of times farther away than the view is deep came to lie behind the centre of projection,
+/// for want of digits.
 #[test]
 fn far_casters_stay_before_the_centre_of_projection() {
     let close = Camera::perspective(DMat4::IDENTITY, 1.0, 1.0, 0.01, 0.05);
@@ -193,8 +195,8 @@ fn far_casters_stay_before_the_centre_of_projection() {
     }
 }
 
-/// Methods with an axis of their own were guarded against a map without warp along *that* axis: the prediction of a guarded map could be
-/// several times that of no warp.
+/// Methods with an axis of their own were guarded against a map without warp along *that* axis: the prediction of a
+/// guarded map could be several times that of no warp.
 #[test]
 fn the_guard_measures_all_methods_alike() {
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

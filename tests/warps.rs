@@ -1,13 +1,13 @@
-//! What every warped fit promises, over hostile inputs: what can be shadowed is inside the map with W > 0, what can throw a shadow is
-//! neither culled nor clipped, one light ray is one point of the map, depth grows along it, the winding of the world is kept, nothing
-//! is NaN, equal inputs give equal bits; and guarded warps are never predicted to be worse than none.
+//! What every warped fit promises, over hostile inputs: what can be shadowed is inside the map with W > 0, what can
+//! throw a shadow is neither culled nor clipped, one light ray is one point of the map, depth grows along it, the
+//! winding of the world is kept, nothing is NaN, equal inputs give equal bits;
+//! and guarded warps are never predicted to be worse than none.
 
 mod common;
 
-use std::sync::atomic::{AtomicU32, Ordering};
-
-use antumbra::{Aabb, Focus, Remix, ShadowFrame, ShadowTechnique, Warp};
-use common::{Inputs, in_view, inputs, point_in, shares, towards_light, view_point};
+use antumbra::{Aabb, Focus, Remix, ShadowFrame, Warp};
+use common::tally::Tally;
+use common::{Inputs, caster, in_view, inputs, receiver, shares, sound};
 use glam::{DVec3, DVec4};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -15,7 +15,8 @@ use proptest::test_runner::TestCaseError;
 /// Inputs that each warp is tried on.
 const CASES: u32 = 200_000;
 
-/// Every warp that bends, with options at random, and whether it is guarded. Guards leave fixed strengths and least-error alone.
+/// Every warp that bends, with options at random, and whether it is guarded.
+/// Guards leave fixed strengths and least-error alone.
 fn remixes([strength, focus, pull_back]: [f32; 3]) -> [Remix; 12] {
     let warped = |warp, guard| Remix { warp, guard, ..Remix::default() };
     let focused = |focus| Warp::Trapezoidal { focus };
@@ -50,54 +51,17 @@ struct Pair {
     caster: DVec3,
 }
 
-/// The receiver at some shares of the view (or, if `anywhere`, of the receivers' bounds) and a caster at a share of its ray to the light,
-/// if there are such.
+/// The receiver at some shares of the view (or, if `anywhere`, of the receivers' bounds) and a caster at a share of its
+/// ray to the light, if there are such.
 fn pair(inputs: &Inputs, shares: [f64; 3], along: f64, anywhere: bool) -> Option<Pair> {
-    let receivers = &inputs.receivers;
-    if receivers.is_empty() {
+    if inputs.receivers.is_empty() {
         return None;
     }
-    let receiver = if anywhere {
-        point_in(receivers, shares)
-    } else {
-        view_point(&inputs.camera, shares).clamp(receivers.min, receivers.max)
-    };
+    let receiver = receiver(inputs, shares, anywhere);
     if !in_view(inputs, receiver) {
         return None;
     }
-    inputs.caster_boxes().iter().find_map(|bounds| {
-        let (first, last) = towards_light(bounds, receiver, inputs.travel)?;
-        let caster = receiver - inputs.travel * (first + along * (last - first));
-        Some(Pair { receiver, caster: caster.clamp(bounds.min, bounds.max) })
-    })
-}
-
-fn all_finite(frame: &ShadowFrame) -> bool {
-    let uniforms: &[f32] = bytemuck::cast_slice(&frame.uniforms.views);
-    uniforms.iter().all(|value| value.is_finite())
-        && frame.predicted.error.is_finite()
-        && frame.views.iter().all(|view| {
-            view.clip_from_render.is_finite()
-                && view.depth_from_render.is_finite()
-                && view.texel.world[0] > 0.0
-                && view.texel.world[1].is_finite()
-                && view.texel.pixels.max.is_finite()
-                && view.warp_strength.is_finite()
-                && view.warp_strength >= 0.0
-                && view.domain.iter().all(|depth| depth.is_finite())
-                && view.cull.planes().iter().all(|plane| plane.is_finite())
-        })
-}
-
-/// Everything is finite, equal inputs give equal bits, and no view means a reason.
-fn sound(remix: Remix, inputs: &Inputs) -> Result<ShadowFrame, TestCaseError> {
-    let frame = remix.fit(&inputs.fit_input()).unwrap();
-    prop_assert!(all_finite(&frame), "{:?}: {:?}", remix.warp, frame);
-    let again = remix.fit(&inputs.fit_input()).unwrap();
-    prop_assert_eq!(bytemuck::bytes_of(&frame.uniforms), bytemuck::bytes_of(&again.uniforms));
-    prop_assert_eq!(&frame, &again);
-    prop_assert!(!frame.views.is_empty() || !frame.left_out.is_empty());
-    Ok(frame)
+    Some(Pair { receiver, caster: caster(inputs, receiver, along)? })
 }
 
 /// A receiver is on the map, its caster is drawn, and the map keeps the sense of rotation where the receiver is.
@@ -144,13 +108,13 @@ fn serves(frame: &ShadowFrame, remix: Remix, inputs: &Inputs, pair: &Pair) -> Re
 }
 
 /// Cases, and those of them in which a receiver that something can shadow was in view.
-static COUNTS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
+static COUNTS: Tally<2> = Tally::new();
 
 /// The main property; then, that its generator reaches what it is about in at least a sixth of the cases.
 #[test]
 fn nothing_is_lost() {
     nothing_is_lost_over_hostile_inputs();
-    let [cases, reached] = COUNTS.each_ref().map(|count| count.load(Ordering::Relaxed));
+    let [cases, reached] = COUNTS.read();
     println!("{reached} of {cases} cases had a shadowed receiver in view; 12 warps each");
     assert!(cases >= CASES && reached >= cases / 6);
 }
@@ -161,10 +125,12 @@ proptest! {
     fn nothing_is_lost_over_hostile_inputs(
         inputs in inputs(), options in options(), receivers in prop::array::uniform4(shares()), along in 0.0..=1.0_f64,
     ) {
-        COUNTS[0].fetch_add(1, Ordering::Relaxed);
+        COUNTS.count(0);
         let pairs = receivers.into_iter().enumerate();
         let pairs: Vec<Pair> = pairs.filter_map(|(index, at)| pair(&inputs, at, along, index == 3)).collect();
-        COUNTS[1].fetch_add(u32::from(!pairs.is_empty()), Ordering::Relaxed);
+        if !pairs.is_empty() {
+            COUNTS.count(1);
+        }
         let [uniform, warps @ ..] = remixes(options);
         let uniform = sound(uniform, &inputs)?;
         for remix in warps {

@@ -4,8 +4,8 @@ use antumbra::lab::statistics::rank_correlation;
 
 use crate::record::{Record, Sweep};
 
-/// Focused maps with fewer wrong pixels than this share leave nothing to gain: 48 pixels of 800 × 600. Ratios to less are noise; ten times
-/// more would leave out large maps of small scenes.
+/// Focused maps with fewer wrong pixels than this share leave nothing to gain: 48 pixels of 800 × 600. Ratios to less
+/// are noise; ten times more would leave out large maps of small scenes.
 pub(crate) const LEAST_WRONG: f64 = 1e-4;
 /// Half a pixel of 800 × 600: stands for none where a ratio is taken.
 const HALF_A_PIXEL: f64 = 1e-6;

@@ -1,7 +1,9 @@
-//! How strong a warp pays: true error over κλ, on many scenes and viewpoints, map sizes 256 to 2048, beside the named techniques.
+//! How strong a warp pays: true error over κλ, on many scenes and viewpoints, map sizes 256 to 2048,
+//! beside the named techniques.
 //!
-//! `cargo bench --bench warp_sweep` sweeps the built-in scenes and, where `ANTUMBRA_SCENES` names a folder, a tour of every scene in it and
-//! the cases beside it. It writes `docs/WARPS.md` and the pictures of it; every run is kept as a line of `target/warp_sweep/sweep.csv`.
+//! `cargo bench --bench warp_sweep` sweeps the built-in scenes and, where `ANTUMBRA_SCENES` names a folder, a tour of
+//! every scene in it and the cases beside it. It writes `docs/WARPS.md` and the pictures of it; every run is kept as a
+//! line of `target/warp_sweep/sweep.csv`.
 //!
 //! - `-- NAME` sweeps the cases whose `set/scene/case` contains NAME, into `target/warp_sweep` instead.
 //! - `-- --quick` sweeps every fourth case at two sizes, into `target/warp_sweep` instead.

@@ -1,7 +1,7 @@
 //! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `pcf_*.wgsl`, `visibility_one*.wgsl`
 //! and `caster.wgsl`.
 //!
-//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins.rs`
+//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins`
 //! holds them together on an adapter. The software renderer of the lab runs on them.
 //!
 //! # References

@@ -1,10 +1,12 @@
 //! The debug view of aliasing: the Rust twin of `shaders/footprint.wgsl` ([`wgsl::FOOTPRINT`](crate::wgsl::FOOTPRINT)).
 //!
-//! Each function has the name and the arithmetic of its shader twin, in f32; `tests/footprint.rs` holds them together on an
-//! adapter. [`aliasing::footprint_at`](crate::aliasing::footprint_at) is the exact one, from a normal instead of derivatives.
+//! Each function has the name and the arithmetic of its shader twin, in f32; `tests/footprint` holds them together
+//! on an adapter. [`aliasing::footprint_at`](crate::aliasing::footprint_at) is the exact one,
+//! from a normal instead of derivatives.
 //!
 //! # References
-//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: error m = texel over pixel.
+//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008:
+//!   error m = texel over pixel.
 //! - `MATH.md` section 8.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
@@ -14,14 +16,15 @@ use crate::frame::ViewUniforms;
 /// Twin of the shader's constant: below every extent in texels that matters.
 const ANTUMBRA_FOOTPRINT_SMALLEST: f32 = 1e-30;
 
-/// Twin of the shader's constant: factors of two from 1 texel per pixel to the ends of the scale of colours. Fewer would
-/// saturate on the first small map, more would make pictures pale.
+/// Twin of the shader's constant: factors of two from 1 texel per pixel to the ends of the scale of colours. Fewer
+/// would saturate on the first small map, more would make pictures pale.
 pub const ANTUMBRA_FOOTPRINT_OCTAVES: f32 = 4.0;
 
-/// Twin of `antumbra_footprint`: texels over a pixel in the direction in which there are fewest, 0 where there is no map.
+/// Twin of `antumbra_footprint`: texels over a pixel in the direction in which there are fewest,
+/// 0 where there is no map.
 ///
-/// `side` is that of the map, texels; the derivatives are the receiver's steps from a pixel to the next, to the right and
-/// downwards or upwards, world units.
+/// `side` is that of the map, texels; the derivatives are the receiver's steps from a pixel to the next, to the right
+/// and downwards or upwards, world units.
 #[must_use]
 pub fn antumbra_footprint(
     view: &ViewUniforms,

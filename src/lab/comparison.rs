@@ -78,11 +78,13 @@ pub struct Programme {
     pub repetitions: u32,
 }
 
-/// Most pictures of a case: a page of all techniques at all sizes would weigh some 60 MB. Fewer show less; more load slowly.
+/// Most pictures of a case: a page of all techniques at all sizes would weigh some 60 MB. Fewer show less;
+/// more load slowly.
 const MOST_PICTURES: usize = 10;
 
 impl Programme {
-    /// Whether maps of this size are shown as pictures: all sizes where these are few, else the middle one. Tables and plots have them all.
+    /// Whether maps of this size are shown as pictures: all sizes where these are few, else the middle one.
+    /// Tables and plots have them all.
     fn pictures(&self, size: u32) -> bool {
         let few = self.techniques.len() * self.sizes.len() <= MOST_PICTURES;
         few || self.sizes.get(self.sizes.len() / 2) == Some(&size)

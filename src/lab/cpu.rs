@@ -1,10 +1,10 @@
-//! The software renderer: z-buffer shadow mapping on the Rust twins of the shaders, for machines without an adapter, and as
-//! the check of those with one.
+//! The software renderer: z-buffer shadow mapping on the Rust twins of the shaders, for machines without an adapter,
+//! and as the check of those with one.
 //!
 //! # References
-//! - S. Bu, J. Bustos, S. L. Tan, *Implementation and assessment of software-based shadow mapping techniques*: rasterise from
-//!   the light, look up by projecting each pixel into light space (its equations 1 and 2). Erratum GZ-1: its constant bias is
-//!   a threshold, not a low-pass filter; here the bias is the library's own.
+//! - S. Bu, J. Bustos, S. L. Tan, *Implementation and assessment of software-based shadow mapping techniques*:
+//!   rasterise from the light, look up by projecting each pixel into light space (its equations 1 and 2). Erratum GZ-1:
+//!   its constant bias is a threshold, not a low-pass filter; here the bias is the library's own.
 
 use std::time::Instant;
 

@@ -1,11 +1,12 @@
-//! The error of a map over depth in one dimension: how far a step in the map goes in the picture, for maps that lay a range of depths
-//! out uniformly, logarithmically or by a projection.
+//! The error of a map over depth in one dimension: how far a step in the map goes in the picture, for maps that lay a
+//! range of depths out uniformly, logarithmically or by a projection.
 //!
-//! E(z) = (dz/ds) / z, with s from 0 to 1 over the map. ∫ dz / (z E(z)) = 1 for every layout: nothing is gained in sum, only moved.
+//! E(z) = (dz/ds) / z, with s from 0 to 1 over the map. ∫ dz / (z E(z)) = 1 for every layout:
+//! nothing is gained in sum, only moved.
 //!
 //! # References
-//! - Chong, *Real-time perspective optimal shadow maps*, 2003, and Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective
-//!   shadow maps*, 2008: the metric, without its factor 2 tan θ.
+//! - Chong, *Real-time perspective optimal shadow maps*, 2003, and Lloyd, Govindaraju, Quammen, Molnar & Manocha,
+//!   *Logarithmic perspective shadow maps*, 2008: the metric, without its factor 2 tan θ.
 
 /// How a map lays out a range of depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,8 @@ impl Layout {
 /// Halvings of an interval of depths: more than a double tells apart.
 const HALVINGS: u32 = 200;
 
-/// The depth in [`low`, `high`] at which two layouts of `range` err alike; `None` where one is the better one at both ends.
+/// The depth in [`low`, `high`] at which two layouts of `range` err alike;
+/// `None` where one is the better one at both ends.
 #[must_use]
 pub fn crossing(a: Layout, b: Layout, range: [f64; 2], [mut low, mut high]: [f64; 2]) -> Option<f64> {
     let above = |z| a.error(range, z) > b.error(range, z);

@@ -23,14 +23,15 @@ pub struct Measured {
     pub unserved: f64,
 }
 
-/// Side of a pixel of [`Measured::paint`], pixels of the picture: footprints change slowly but for slants, and a report holds
-/// one picture of them for each run. At 1 a report doubles, at 4 thin things are gone.
+/// Side of a pixel of [`Measured::paint`], pixels of the picture: footprints change slowly but for slants, and a report
+/// holds one picture of them for each run. At 1 a report doubles, at 4 thin things are gone.
 pub const COARSENESS: usize = 2;
 
 /// Steps of colour to a factor of two. Fewer show as bands, more make pictures larger that look the same.
 const STEPS: f64 = 8.0;
 
-/// Where nothing is judged (sky, and what is turned away from the light), and where no map serves what is seen; 8-bit sRGB.
+/// Where nothing is judged (sky, and what is turned away from the light), and where no map serves what is seen;
+/// 8-bit sRGB.
 const UNJUDGED_COLOUR: [u8; 3] = [120, 120, 120];
 const UNSERVED_COLOUR: [u8; 3] = [70, 70, 70];
 

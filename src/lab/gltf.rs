@@ -2,8 +2,8 @@
 //!
 //! Only what casts a shadow is read: node transforms (in f64), triangle lists, strips and fans with indices of any
 //! width or none, and the alpha of `MASK` materials. Points, lines, skins, morph targets, animations, colours and blend
-//! transparency are passed over; a `BLEND` material is solid. Every size and index of the file is checked: a bad file is
-//! an error, never a panic.
+//! transparency are passed over; a `BLEND` material is solid. Every size and index of the file is checked: a bad file
+//! is an error, never a panic.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -9,20 +9,20 @@
 //! | `floor_rmse`, `floor_mae` | the same for v = c: what a perfect hard-edged mask scores |
 //! | `excess` | `mae` − `floor_mae`; negative when a filter beats the hard edge |
 //! | `wrong`, `wrong_center` | fraction with \|v − a\| > ½, \|v − c\| > ½ |
-//! | `leak_…`, `false_…` | `wrong_center` apart: light where there is none (v > c), shadow where there is none (v < c) |
+//! | `leak_…`, `false_…` | `wrong_center` apart: light where none is (v > c), shadow where none is (v < c) |
 //! | `…_edge`, `…_interior` | the same apart: up to 2 px (Chebyshev) from an edge pixel, or further |
 //! | `…_interior_strict` | as `…_interior`, from strict edges alone |
 //! | `edge_center_px` | mean distance from the centre truth's shadow edges to the mask's, pixels |
 //!
-//! An *edge pixel* is a valid pixel that a shadow's edge passes through or beside: its area truth is strictly between 0 and
-//! 1, or a valid 4-neighbour has another centre truth. The first half matters for shadows thinner than a pixel,
-//! which the grid of centres may not see. A *strict* edge pixel is one of the second half only: then a shadow between the
-//! centres has no edge, and a map that shows it is counted as acne.
+//! An *edge pixel* is a valid pixel that a shadow's edge passes through or beside: its area truth is strictly between 0
+//! and 1, or a valid 4-neighbour has another centre truth. The first half matters for shadows thinner than a pixel,
+//! which the grid of centres may not see. A *strict* edge pixel is one of the second half only: then a shadow between
+//! the centres has no edge, and a map that shows it is counted as acne.
 //!
-//! `edge_center_px` looks at pairs of 4-neighbours on one surface ([`Truth::joins`]) whose centre truths differ: the truth's
-//! edge lies half-way between them. The mask's edges lie between such pairs on opposite sides of ½, where the line
-//! through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that darkens along the same
-//! direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
+//! `edge_center_px` looks at pairs of 4-neighbours on one surface ([`Truth::joins`]) whose centre truths differ: the
+//! truth's edge lies half-way between them. The mask's edges lie between such pairs on opposite sides of ½, where the
+//! line through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that
+//! darkens along the same direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
 
 use super::truth::{JOINS_BELOW, JOINS_RIGHT, Truth};
 

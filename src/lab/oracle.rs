@@ -1,17 +1,18 @@
-//! The ideal lookup: what a shadow map with a given grid of texels and a given filter shows when nothing else is in its way.
+//! The ideal lookup: what a shadow map with a given grid of texels and a given filter shows when nothing else is in its
+//! way.
 //!
-//! Each texel that a filter reads answers for the light ray through its centre, and is asked about the point at which that
-//! ray crosses the plane of the receiver's own triangle: in shadow where something lies between that point and the light. There
-//! is no rasteriser, no rounding of depths and no bias; a plane never shadows itself. What such a mask still has of
-//! false shadow and leaks comes from the grid and the filter alone.
+//! Each texel that a filter reads answers for the light ray through its centre, and is asked about the point at which
+//! that ray crosses the plane of the receiver's own triangle: in shadow where something lies between that point and the
+//! light. There is no rasteriser, no rounding of depths and no bias; a plane never shadows itself. What such a mask
+//! still has of false shadow and leaks comes from the grid and the filter alone.
 //!
-//! It is a yardstick, not a bound: a technique that compares with another point than the plane's (a lifted one, say) trades
-//! false shadow for leaks, and may have less of one of them. Where a wall meets the ground, its plane runs on below, and the
-//! bare plane is a poor thing to ask about; [`Compare`] has others.
+//! It is a yardstick, not a bound: a technique that compares with another point than the plane's (a lifted one, say)
+//! trades false shadow for leaks, and may have less of one of them. Where a wall meets the ground, its plane runs on
+//! below, and the bare plane is a poor thing to ask about; [`Compare`] has others.
 //!
 //! # References
-//! - Dou, Yan, Kerzner, Dai & Wyman, *Adaptive depth bias for shadow maps*, I3D 2014 (comparing with the receiver's plane at the
-//!   texel's centre).
+//! - Dou, Yan, Kerzner, Dai & Wyman, *Adaptive depth bias for shadow maps*, I3D 2014 (comparing with the receiver's
+//!   plane at the texel's centre).
 
 use std::collections::HashMap;
 
@@ -23,13 +24,13 @@ use super::case::{Case, CaseLight};
 use super::truth::Truth;
 use crate::frame::{Pcf, ShadowFrame};
 
-/// How high above a receiver's plane a shadow ray starts, as a part of the scene's radius. The points of a plane beyond its
-/// triangle lie on its neighbours' planes only up to what f32 files leave of flatness (6·10⁻⁸ of a coordinate): less lets
-/// flat ground of many triangles shadow itself, more does not see what lies flat on the ground.
+/// How high above a receiver's plane a shadow ray starts, as a part of the scene's radius. The points of a plane beyond
+/// its triangle lie on its neighbours' planes only up to what f32 files leave of flatness (6·10⁻⁸ of a coordinate):
+/// less lets flat ground of many triangles shadow itself, more does not see what lies flat on the ground.
 const PLANE_SLACK: f64 = 1e-6;
 
-/// Points along a side of the grid that [`Oracle::lit_around`] traces: from one texel before a receiver to one after it, in
-/// steps of half a texel.
+/// Points along a side of the grid that [`Oracle::lit_around`] traces: from one texel before a receiver to one after
+/// it, in steps of half a texel.
 const AROUND_SIDE: i32 = 5;
 
 /// Number of points that [`Oracle::lit_around`] traces.
@@ -83,17 +84,19 @@ struct Tilt {
 /// What a texel is asked about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// The point at which its light ray crosses the receiver's plane, even where the plane runs on below other surfaces.
+    /// The point at which its light ray crosses the receiver's plane,
+    /// even where the plane runs on below other surfaces.
     Plane,
-    /// That point, or where its ray is as far from the light as the receiver, whichever is nearer to the light: what is below the
-    /// receiver itself does not shade it.
+    /// That point, or where its ray is as far from the light as the receiver, whichever is nearer to the light: what is
+    /// below the receiver itself does not shade it.
     Nearer,
     /// The surface nearest to that point along the ray.
     Surface,
 }
 
 impl<'s> Oracle<'s> {
-    /// Finds the receivers of a case from its truth; `None` unless the light is directional, as maps with w = 1 need it.
+    /// Finds the receivers of a case from its truth; `None` unless the light is directional,
+    /// as maps with w = 1 need it.
     #[must_use]
     pub fn new(case: &Case, truth: &Truth, bvh: &'s Bvh<'s>) -> Option<Self> {
         let CaseLight::Directional { travel } = case.light else { return None };
@@ -118,8 +121,8 @@ impl<'s> Oracle<'s> {
         Some(Self { bvh, travel, width, receivers })
     }
 
-    /// The mask of an ideal lookup in a frame of one view, which was fitted with its render space at `origin`: 0 (shadow) to 1
-    /// (light), row 0 on top; 1 where the truth is not valid, and everywhere without a view.
+    /// The mask of an ideal lookup in a frame of one view, which was fitted with its render space at `origin`: 0
+    /// (shadow) to 1 (light), row 0 on top; 1 where the truth is not valid, and everywhere without a view.
     #[must_use]
     pub fn mask(&self, frame: &ShadowFrame, origin: DVec3, compare: Compare) -> Vec<f32> {
         let Some(grid) = Grid::of(frame, origin) else { return vec![1.0; self.receivers.len()] };
@@ -136,9 +139,9 @@ impl<'s> Oracle<'s> {
         self.receivers.par_chunks(BAND_ROWS * self.width).flat_map_iter(band).collect()
     }
 
-    /// How many of [`AROUND`] points are lit on the plane of a pixel's receiver, in a grid of half texels from one texel before
-    /// it to one texel after it in u and in v: all that a bilinear lookup there can depend on. `None` where the truth is not
-    /// valid or the frame has no view.
+    /// How many of [`AROUND`] points are lit on the plane of a pixel's receiver, in a grid of half texels from one
+    /// texel before it to one texel after it in u and in v: all that a bilinear lookup there can depend on. `None`
+    /// where the truth is not valid or the frame has no view.
     #[must_use]
     pub fn lit_around(&self, frame: &ShadowFrame, origin: DVec3, pixel: usize, compare: Compare) -> Option<u32> {
         let receiver = self.receivers.get(pixel)?.as_ref()?;
@@ -197,7 +200,8 @@ impl<'s> Oracle<'s> {
         if self.bvh.is_blocked(&onwards, None) {
             return false;
         }
-        // What is above stands for the plane where it is as near to the receiver as texels read there are: is it the first?
+        // What is above stands for the plane where it is as near to the receiver as texels read there are:
+        // is it the first?
         let surface = point + direction * above.t;
         let near = surface.distance(receiver.position) <= tilt.reach;
         near && !self.bvh.is_blocked(&Ray { origin: surface, t_min: start, ..towards_light }, Some(above.triangle))
@@ -219,7 +223,8 @@ impl Grid {
     fn tilt(&self, receiver: &Receiver) -> Tilt {
         let (u, v, n) = (self.u.truncate(), self.v.truncate(), receiver.normal);
         let at = (receiver.position - self.origin).extend(1.0);
-        // Columns of the inverse of the matrix with rows u, v, n: a step of one texel along one of them, none along the others.
+        // Columns of the inverse of the matrix with rows u, v, n: a step of one texel along one of them,
+        // none along the others.
         let (along_u, along_v) = (v.cross(n), n.cross(u));
         let (along_u, along_v) = (along_u / u.dot(along_u), along_v / v.dot(along_v));
         let reach = (along_u + along_v).length().max((along_u - along_v).length());
@@ -246,7 +251,8 @@ struct Taps {
 }
 
 impl Taps {
-    /// A box as wide as the filter, at `at` texels from the map's edge, over texels as points that bilinear weights widen.
+    /// A box as wide as the filter, at `at` texels from the map's edge,
+    /// over texels as points that bilinear weights widen.
     fn of(filter: Pcf, at: f64) -> Self {
         let width = match filter {
             Pcf::Point => return Self { first: at.floor() as i64, ends: [1.0, 0.0], count: 1, between: 0.0 },
@@ -275,8 +281,8 @@ impl Taps {
 
 /// A frame whose maps lie elsewhere on their grid: every texel moved by `texels` (less than 1 in size) along u and v.
 ///
-/// The texels keep their size and what they cover to within one texel of the border, which the fit leaves for placing; so a
-/// technique's score over such frames shows how much of it is the luck of one placement. Affine maps only.
+/// The texels keep their size and what they cover to within one texel of the border, which the fit leaves for placing;
+/// so a technique's score over such frames shows how much of it is the luck of one placement. Affine maps only.
 #[must_use]
 pub fn placed_elsewhere(frame: &ShadowFrame, texels: DVec2) -> ShadowFrame {
     let mut frame = frame.clone();

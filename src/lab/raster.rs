@@ -86,8 +86,8 @@ pub struct DepthTarget {
 }
 
 impl DepthTarget {
-    /// Largest width and height, pixels: what GPUs allow, and small enough for the edge functions (in 1/256 pixel) to be
-    /// exact in 64-bit integers with 17 bits to spare.
+    /// Largest width and height, pixels: what GPUs allow, and small enough for the edge functions (in 1/256 pixel) to
+    /// be exact in 64-bit integers with 17 bits to spare.
     pub const MAX_SIDE: u32 = 16_384;
 
     /// A cleared image of `width` x `height` pixels.

@@ -26,6 +26,12 @@ impl Random {
         Self { state: key.wrapping_mul(Self::STEP) }
     }
 
+    /// The sequence that goes on from a counter's `state`.
+    #[must_use]
+    pub fn from_state(state: u64) -> Self {
+        Self { state }
+    }
+
     /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(Self::STEP);
@@ -188,8 +194,8 @@ impl MeshBuilder {
         self.cap(first + (outlines.len() as u32 - 1) * sides, sides, false);
     }
 
-    /// Adds a tube through `rings` (at least two, at different places) with `sides` corners each; the start is open when
-    /// `open_start` (it sits inside something else), the end closes in a point beyond the last ring.
+    /// Adds a tube through `rings` (at least two, at different places) with `sides` corners each; the start is open
+    /// when `open_start` (it sits inside something else), the end closes in a point beyond the last ring.
     pub fn tube(&mut self, rings: &[Ring], sides: u32, open_start: bool) {
         let first = self.model.positions.len() as u32;
         let last = rings.len() - 1;
@@ -226,8 +232,8 @@ impl MeshBuilder {
         (rings - 1) * sides * 2 + sides + if open_start { 0 } else { sides - 2 }
     }
 
-    /// Adds an ellipsoid of `sides` meridians and `bands` (at least 2) bands from pole to pole; `half` are its half axes
-    /// along the columns of `axes` (a rotation), `dent(direction)` scales the radius.
+    /// Adds an ellipsoid of `sides` meridians and `bands` (at least 2) bands from pole to pole; `half` are its half
+    /// axes along the columns of `axes` (a rotation), `dent(direction)` scales the radius.
     pub fn ellipsoid(
         &mut self,
         centre: DVec3,
@@ -276,7 +282,8 @@ impl MeshBuilder {
     }
 }
 
-/// A regular outline of `sides` corners around `centre` in x and z, counter-clockwise seen from above; `turn` in radians.
+/// A regular outline of `sides` corners around `centre` in x and z, counter-clockwise seen from above;
+/// `turn` in radians.
 #[must_use]
 pub fn outline(centre: DVec3, radius: f64, sides: u32, turn: f64) -> Vec<DVec3> {
     let corner = |i: u32| {
@@ -291,8 +298,22 @@ pub fn outline(centre: DVec3, radius: f64, sides: u32, turn: f64) -> Vec<DVec3> 
 pub(crate) mod checks {
     use super::SceneModel;
 
+    /// The scene is about as large as the thesis says: 1 % more or fewer triangles.
+    pub(crate) fn assert_number_of_triangles(build: fn() -> SceneModel, expected: usize) {
+        let count = build().triangles.len();
+        assert!(count.abs_diff(expected) <= expected / 100, "{count} triangles, expected {expected} +- 1 %");
+    }
+
+    /// The scene is sound, of a number of objects that culling is about, and the same every time.
+    pub(crate) fn assert_sound_every_time(build: fn() -> SceneModel) {
+        let model = build();
+        assert_sound(&model);
+        assert!((20..=400).contains(&model.objects.len()), "{} objects", model.objects.len());
+        assert_eq!(fingerprint(&model), fingerprint(&build()));
+    }
+
     /// A hash of everything that is drawn.
-    pub(crate) fn fingerprint(model: &SceneModel) -> blake3::Hash {
+    fn fingerprint(model: &SceneModel) -> blake3::Hash {
         let mut hasher = blake3::Hasher::new();
         for position in &model.positions {
             hasher.update(bytemuck::bytes_of(&position.to_array()));
@@ -302,7 +323,7 @@ pub(crate) mod checks {
     }
 
     /// Finite positions, indices in range, triangles with area (in `f32` too), objects that cover all in order.
-    pub(crate) fn assert_sound(model: &SceneModel) {
+    fn assert_sound(model: &SceneModel) {
         assert!(model.positions.iter().all(|position| position.is_finite()));
         for (id, triangle) in model.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|vertex| model.positions[vertex as usize].as_vec3().as_dvec3());

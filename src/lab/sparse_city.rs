@@ -387,20 +387,16 @@ impl FigurePart<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::shapes::checks::{assert_sound, fingerprint};
+    use crate::lab::shapes::checks::{assert_number_of_triangles, assert_sound_every_time};
 
     #[test]
     fn has_the_thesis_number_of_triangles() {
-        let count = sparse_city().triangles.len();
-        assert!(count.abs_diff(TRIANGLES) <= TRIANGLES / 100, "{count} triangles, expected {TRIANGLES} +- 1 %");
+        assert_number_of_triangles(sparse_city, TRIANGLES);
     }
 
     #[test]
     fn is_sound_and_equal_every_time() {
-        let model = sparse_city();
-        assert_sound(&model);
-        assert!((20..=400).contains(&model.objects.len()), "{} objects", model.objects.len());
-        assert_eq!(fingerprint(&model), fingerprint(&sparse_city()));
+        assert_sound_every_time(sparse_city);
     }
 
     #[test]

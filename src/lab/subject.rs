@@ -87,8 +87,8 @@ impl Setting {
         Self { camera, light: light_of(&case.light), visible, origin: case.camera.eye }
     }
 
-    /// Surfaces that are seen and face the light, as an engine reads them out of last frame's depth buffer: one for each cell of
-    /// [`SEEN_GRID`], within the shadow distance.
+    /// Surfaces that are seen and face the light, as an engine reads them out of last frame's depth buffer: one for
+    /// each cell of [`SEEN_GRID`], within the shadow distance.
     #[must_use]
     pub fn visible_points(&self, subject: &Subject) -> Vec<DVec3> {
         let Light::Directional { travel } = self.light else { return Vec::new() };
@@ -122,8 +122,8 @@ impl Setting {
     }
 }
 
-/// Columns and rows of [`Setting::visible_points`]: one pixel in 25 × 25 of an 800 × 600 picture. Fewer miss thin things near the eye;
-/// more change the strengths by less than a hundredth.
+/// Columns and rows of [`Setting::visible_points`]: one pixel in 25 × 25 of an 800 × 600 picture. Fewer miss thin
+/// things near the eye; more change the strengths by less than a hundredth.
 pub const SEEN_GRID: glam::UVec2 = glam::UVec2::new(32, 24);
 
 /// A case's light in the library's units.

@@ -1,6 +1,6 @@
 //! The `TreeLine` scene: three detailed trees in a row on a floor, 111,000 triangles, made to study how the shadows of
-//! leaves and twigs fall (thesis on the Shadow Mapping Remix Approach, results chapter; it names the number of triangles
-//! and the planes 1 and 50; the geometry is this project's own).
+//! leaves and twigs fall (thesis on the Shadow Mapping Remix Approach, results chapter; it names the number of
+//! triangles and the planes 1 and 50; the geometry is this project's own).
 //!
 //! 1 unit = 1 m. The trees stand on the x axis; a rail fence runs behind them, stones, mushrooms and grass around them.
 
@@ -14,7 +14,8 @@ use super::shapes::{MeshBuilder, Random, Ring, perpendicular};
 /// Triangles of the scene: the thesis' number. What wood, floor and props leave goes into leaves.
 const TRIANGLES: usize = 111_000;
 
-/// Half the side of the square floor, m: the shadow of the tallest tree (8.7 m) stays on it down to a sun 24 degrees high.
+/// Half the side of the square floor, m: the shadow of the tallest tree (8.7 m) stays on it down to a sun 24 degrees
+/// high.
 const FLOOR_HALF: f64 = 20.0;
 
 /// Cells of the floor per side: six to a wave of the bumps, which therefore look round.
@@ -373,20 +374,16 @@ fn add_grass(mesh: &mut MeshBuilder) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::shapes::checks::{assert_sound, fingerprint};
+    use crate::lab::shapes::checks::{assert_number_of_triangles, assert_sound_every_time};
 
     #[test]
     fn has_the_thesis_number_of_triangles() {
-        let count = treeline().triangles.len();
-        assert!(count.abs_diff(TRIANGLES) <= TRIANGLES / 100, "{count} triangles, expected {TRIANGLES} +- 1 %");
+        assert_number_of_triangles(treeline, TRIANGLES);
     }
 
     #[test]
     fn is_sound_and_equal_every_time() {
-        let model = treeline();
-        assert_sound(&model);
-        assert!((20..=400).contains(&model.objects.len()), "{} objects", model.objects.len());
-        assert_eq!(fingerprint(&model), fingerprint(&treeline()));
+        assert_sound_every_time(treeline);
     }
 
     #[test]

@@ -5,8 +5,8 @@
 //!
 //! The rules, each of which the published floors of nine cases depend on (`tests/truth.rs`):
 //! - A sample is *defined* when its view ray meets geometry between the near and the far plane and the light can shine
-//!   on the side that is seen: N·L > 0 with the geometric normal turned towards the eye, whatever the winding says. For a
-//!   spot or point light the point must also lie inside cone and range.
+//!   on the side that is seen: N·L > 0 with the geometric normal turned towards the eye, whatever the winding says. For
+//!   a spot or point light the point must also lie inside cone and range.
 //! - A pixel is *valid* when its centre sample is defined.
 //! - Samples of the area that are not defined do not count: the area truth is the mean over the others.
 //! - 16 samples, jittered in a 4×4 grid; where they, the centre and the pixel's corners disagree, 64 more in an 8×8
@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use super::bvh::{Bvh, Hit, Ray};
 use super::case::{Case, CaseLight};
 use super::scene::SceneModel;
+use super::shapes::Random;
 
 pub use cache::{CACHE_VARIABLE, CacheUse, TruthCache};
 
@@ -274,13 +275,10 @@ impl Tally {
     }
 }
 
-/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: the `SplitMix64` mix over pixel and cell.
+/// Two numbers in 0..1 for a cell of a pixel's grid, the same on every run: their key is made of pixel and cell.
 fn jitter(x: u32, y: u32, side: u32, cell: u32) -> [f64; 2] {
     let seed = (u64::from(x) << 40) ^ (u64::from(y) << 16) ^ u64::from(side * side + cell);
-    let mut bits = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(0x9E37_79B9_7F4A_7C15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^= bits >> 31;
+    let bits = Random::new(seed).bits();
     let unit = |half: u32| f64::from(half) / (f64::from(u32::MAX) + 1.0);
     [unit((bits >> 32) as u32), unit(bits as u32)]
 }

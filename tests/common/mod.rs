@@ -1,4 +1,4 @@
-//! Hostile inputs, shared by the property tests.
+//! What property tests share: hostile inputs, and what holds of every frame whatever they are.
 #![allow(
     dead_code,
     unreachable_pub,
@@ -6,9 +6,16 @@
     reason = "each test binary uses its own part; nothing here is a library"
 )]
 
-use antumbra::{Aabb, Camera, DepthRange, FitInput, Light, MapBudget, Object, Projection, Scene};
+pub mod dice;
+pub mod tally;
+
+use antumbra::{
+    Aabb, Camera, DepthRange, FitInput, Light, MapBudget, Object, Projection, Remix, Scene, ShadowFrame,
+    ShadowTechnique,
+};
 use glam::{DMat4, DQuat, DVec3};
 use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
 
 /// A direction that is often along an axis, exactly or a few ulps off.
 pub fn direction() -> impl Strategy<Value = DVec3> {
@@ -198,8 +205,8 @@ fn stage() -> impl Strategy<Value = Stage> {
     )
 }
 
-/// Worlds near and far, light along the view exactly or nearly, flat boxes and none, eyes inside casters, every lens from 1° to 179°,
-/// depths over eight decades or without end, maps of 1 to 16384 texels.
+/// Worlds near and far, light along the view exactly or nearly, flat boxes and none, eyes inside casters, every lens
+/// from 1° to 179°, depths over eight decades or without end, maps of 1 to 16384 texels.
 pub fn inputs() -> impl Strategy<Value = Inputs> {
     let kind = prop_oneof![16 => Just(0_u8), 4 => Just(1), 1 => Just(2), 1 => Just(3)];
     (stage(), kind).prop_flat_map(|(stage, kind)| {
@@ -268,4 +275,51 @@ pub fn in_view(inputs: &Inputs, position: DVec3) -> bool {
         Projection::Orthographic { left, right, down, up, .. } => (left, right, down, up, 1.0),
     };
     view.x >= l * spread && view.x <= r * spread && view.y >= d * spread && view.y <= u * spread
+}
+
+/// The receiver at some shares of the view, or, if `anywhere`, of the receivers' bounds, which are not empty.
+pub fn receiver(inputs: &Inputs, shares: [f64; 3], anywhere: bool) -> DVec3 {
+    if anywhere {
+        point_in(&inputs.receivers, shares)
+    } else {
+        view_point(&inputs.camera, shares).clamp(inputs.receivers.min, inputs.receivers.max)
+    }
+}
+
+/// The caster at a share of a receiver's ray to the light inside the first box that it meets, if any.
+pub fn caster(inputs: &Inputs, receiver: DVec3, along: f64) -> Option<DVec3> {
+    inputs.caster_boxes().iter().find_map(|bounds| {
+        let (first, last) = towards_light(bounds, receiver, inputs.travel)?;
+        let caster = receiver - inputs.travel * (first + along * (last - first));
+        Some(caster.clamp(bounds.min, bounds.max))
+    })
+}
+
+/// Whether no number of a frame is NaN or infinite, or less than it may be.
+pub fn all_finite(frame: &ShadowFrame) -> bool {
+    let uniforms: &[f32] = bytemuck::cast_slice(&frame.uniforms.views);
+    uniforms.iter().all(|value| value.is_finite())
+        && frame.predicted.error.is_finite()
+        && frame.views.iter().all(|view| {
+            view.clip_from_render.is_finite()
+                && view.depth_from_render.is_finite()
+                && view.texel.world[0] > 0.0
+                && view.texel.world[1].is_finite()
+                && view.texel.pixels.max.is_finite()
+                && view.warp_strength.is_finite()
+                && view.warp_strength >= 0.0
+                && view.domain.iter().all(|depth| depth.is_finite())
+                && view.cull.planes().iter().all(|plane| plane.is_finite())
+        })
+}
+
+/// Everything is finite, equal inputs give equal bits, and no view means a reason.
+pub fn sound(remix: Remix, inputs: &Inputs) -> Result<ShadowFrame, TestCaseError> {
+    let frame = remix.fit(&inputs.fit_input()).unwrap();
+    prop_assert!(all_finite(&frame), "{:?}: {:?}", remix.warp, frame);
+    let again = remix.fit(&inputs.fit_input()).unwrap();
+    prop_assert_eq!(bytemuck::bytes_of(&frame.uniforms), bytemuck::bytes_of(&again.uniforms));
+    prop_assert_eq!(&frame, &again);
+    prop_assert!(!frame.views.is_empty() || !frame.left_out.is_empty());
+    Ok(frame)
 }

@@ -1,7 +1,9 @@
 //! What several test files need: an adapter or a stated reason to do without, and a small scene.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use std::path::{Path, PathBuf};
+pub(crate) mod compute;
+
+use std::path::PathBuf;
 
 use antumbra::lab::gpu::Gpu;
 use antumbra::lab::scene::{Cutout, SOLID, SceneModel};
@@ -12,8 +14,9 @@ use glam::{DVec2, DVec3, UVec2};
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::new() {
         Ok(gpu) => {
-            // `tests/run` counts these lines.
-            let test = std::thread::current().name().unwrap_or("test").to_owned();
+            // `tests/run` counts these lines, by the names of tests without their modules.
+            let thread = std::thread::current();
+            let test = thread.name().and_then(|path| path.rsplit("::").next()).unwrap_or("test");
             println!("GPU test: {test} on {}", gpu.adapter());
             Some(gpu)
         }
@@ -136,13 +139,21 @@ fn is_hole(model: &SceneModel, triangle: usize, u: f64, v: f64) -> bool {
     f32::from(alpha) / 255.0 < cutout.cutoff
 }
 
-/// The shared case files; none, said aloud, where `ANTUMBRA_SCENES` is not set.
+/// The folder of the third-party scenes, beside which their cases lie in `../cases`; none, said aloud, where
+/// `ANTUMBRA_SCENES` does not name it.
+pub(crate) fn scenes() -> Option<PathBuf> {
+    let scenes = std::env::var_os("ANTUMBRA_SCENES").map(PathBuf::from);
+    if scenes.is_none() {
+        let thread = std::thread::current();
+        println!("SKIPPED {}: ANTUMBRA_SCENES does not name the shared scenes", thread.name().unwrap_or("test"));
+    }
+    scenes
+}
+
+/// The shared case files; none where there are no scenes.
 pub(crate) fn shared_cases() -> Vec<PathBuf> {
-    let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") else {
-        println!("shared cases: skipped, ANTUMBRA_SCENES is not set");
-        return Vec::new();
-    };
-    let folder = Path::new(&scenes).join("../cases");
+    let Some(scenes) = scenes() else { return Vec::new() };
+    let folder = scenes.join("../cases");
     let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
         .map(|entry| entry.expect("a readable entry").path())

@@ -13,11 +13,11 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The library's passes beside passes written by hand, drawn turn by turn in the same picture.
 ///
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
-/// sample and a constant bias, in three hosts: *bare* (nobody reads a normal), *shaded* (both sides shade what arrives with
-/// Lambert's cosine, as engines do, and need the normal for it) and *at vertices* (its matrix, too, is left to the vertex
-/// stage). Both sides draw the same triangles into targets of the same size. Every repetition times all of them, in
-/// alternating order, those of a ratio one after the other; the medians of the ratios are robust against other work on the
-/// machine.
+/// sample and a constant bias, in three hosts: *bare* (nobody reads a normal), *shaded* (both sides shade what arrives
+/// with Lambert's cosine, as engines do, and need the normal for it) and *at vertices* (its matrix, too, is left to the
+/// vertex stage). Both sides draw the same triangles into targets of the same size. Every repetition times all of them,
+/// in alternating order, those of a ratio one after the other; the medians of the ratios are robust against other work
+/// on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
     /// Library's caster pass, median, milliseconds.
@@ -188,8 +188,7 @@ impl Entries {
     fn new(gpu: &Gpu, renderer: &Renderer, shot: &Shot, maps: &ShadowMaps) -> Self {
         // Casters: a map of the same size, and a matrix for each view.
         let map = map_by_hand(gpu, maps.depth_texture().size());
-        let text = [include_str!("cutout.wgsl"), include_str!("by_hand_casters.wgsl")].concat();
-        let casters_by_hand = pipelines::caster_pair(gpu, "casters by hand", &text, None, renderer.caster_layout());
+        let casters_by_hand = pipelines::casters_by_hand(gpu, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
         // Receivers by hand: the first view's map.
         let layout = receiver_layout(gpu);

@@ -1,8 +1,8 @@
 //! The GPU renderer: the library's shaders, through the library's wgpu layer, on any adapter.
 //!
-//! [`Gpu`] is the device, [`GpuScene`] a scene on it, [`Renderer`] the pipelines of one shader key. A picture takes three
-//! passes: casters into the map, the camera's depth (reversed, so that it stays precise far away), receivers into a mask.
-//! [`Renderer::race`] runs two passes written by hand beside the library's, turn by turn.
+//! [`Gpu`] is the device, [`GpuScene`] a scene on it, [`Renderer`] the pipelines of one shader key. A picture takes
+//! three passes: casters into the map, the camera's depth (reversed, so that it stays precise far away), receivers into
+//! a mask. [`Renderer::race`] runs two passes written by hand beside the library's, turn by turn.
 
 mod baseline;
 mod clock;

@@ -36,20 +36,24 @@ pub(super) struct PairDescriptor<'a> {
 
 /// The library's pass over casters: its layout, its matrix, its vertex function.
 pub(super) fn casters(gpu: &Gpu, shape: MapShape, caster_layout: &wgpu::BindGroupLayout) -> Pair {
-    let text = |stage| [wgsl::CASTER, include_str!("cutout.wgsl"), stage].concat();
-    match shape {
+    let (stage, solid) = match shape {
         MapShape::Affine | MapShape::ProjectiveDepth => {
-            caster_pair(gpu, "casters", &text(include_str!("casters.wgsl")), None, caster_layout)
+            (concat!(include_str!("casters.wgsl"), include_str!("casters_library.wgsl")), None)
         }
-        MapShape::Projective => {
-            let text = text(include_str!("casters_projective.wgsl"));
-            caster_pair(gpu, "casters", &text, Some("write_depth"), caster_layout)
-        }
-    }
+        MapShape::Projective => (include_str!("casters_projective.wgsl"), Some("write_depth")),
+    };
+    caster_pair(gpu, "casters", &[wgsl::CASTER, stage].concat(), solid, caster_layout)
 }
 
-/// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`, and a fragment stage for solid ones.
-pub(super) fn caster_pair(
+/// A pass over casters with one matrix, written by hand.
+pub(super) fn casters_by_hand(gpu: &Gpu, caster_layout: &wgpu::BindGroupLayout) -> Pair {
+    let text = concat!(include_str!("casters.wgsl"), include_str!("casters_by_hand.wgsl"));
+    caster_pair(gpu, "casters by hand", text, None, caster_layout)
+}
+
+/// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`, and a fragment stage for solid
+/// ones.
+fn caster_pair(
     gpu: &Gpu,
     label: &'static str,
     text: &str,
@@ -60,7 +64,7 @@ pub(super) fn caster_pair(
         gpu,
         &PairDescriptor {
             label,
-            text,
+            text: &[text, include_str!("cutout.wgsl")].concat(),
             groups: [Some(layout), None],
             solid: ("throw_solid", solid),
             cut: ("throw_cut", "cut"),
@@ -102,8 +106,8 @@ pub(super) enum Host {
 }
 
 impl Host {
-    /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they cost;
-    /// their lookup stays whole. In warped maps nothing of it is linear in position.
+    /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they
+    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position.
     pub(super) fn of(key: WgslKey) -> Self {
         match (key.shape, key.filter) {
             (MapShape::Affine, Pcf::Point | Pcf::Hardware2x2) => Self::Placed,
@@ -123,12 +127,15 @@ impl Host {
     fn parts(self) -> (&'static str, [&'static str; 2]) {
         const WHOLE: [&str; 2] = ["place", "place_cut"];
         const OWN: [&str; 2] = ["put", "put_cut"];
+        macro_rules! texts {
+            ($($file:literal)+) => { concat!($(include_str!($file)),+) };
+        }
         match self {
-            Self::Whole => (concat!(include_str!("shade_not.wgsl"), include_str!("host_whole.wgsl")), WHOLE),
-            Self::WholeShaded => (concat!(include_str!("shade.wgsl"), include_str!("host_whole.wgsl")), WHOLE),
-            Self::Placed => (include_str!("host_placed.wgsl"), OWN),
-            Self::PlacedShaded => (concat!(include_str!("shade.wgsl"), include_str!("host_placed_shaded.wgsl")), OWN),
-            Self::Bare => (include_str!("host_bare.wgsl"), OWN),
+            Self::Whole => (texts!("host_full.wgsl" "host_whole.wgsl" "shade_not.wgsl"), WHOLE),
+            Self::WholeShaded => (texts!("host_full.wgsl" "host_whole.wgsl" "shade.wgsl"), WHOLE),
+            Self::Placed => (texts!("host_lean.wgsl" "host_placed.wgsl"), OWN),
+            Self::PlacedShaded => (texts!("host_full.wgsl" "host_placed_shaded.wgsl" "shade.wgsl"), OWN),
+            Self::Bare => (texts!("host_lean.wgsl" "host_bare.wgsl"), OWN),
         }
     }
 }

@@ -48,8 +48,8 @@ pub(super) enum Batch<'a> {
 }
 
 impl GpuScene {
-    /// Uploads a model. Positions are narrowed to f32 relative to `origin`, which has to be the origin of the frames that
-    /// are drawn with it.
+    /// Uploads a model. Positions are narrowed to f32 relative to `origin`, which has to be the origin of the frames
+    /// that are drawn with it.
     ///
     /// # Errors
     /// An index of the model that points nowhere, a mask of the wrong size, or more than the device can hold.
@@ -107,7 +107,8 @@ impl GpuScene {
         self.vertices / 3
     }
 
-    /// World bounds of its objects: what an engine would test with [`CullVolume::may_cast`](crate::CullVolume::may_cast).
+    /// World bounds of its objects: what an engine would test with
+    /// [`CullVolume::may_cast`](crate::CullVolume::may_cast).
     #[must_use]
     pub fn bounds(&self) -> &[Aabb] {
         &self.bounds

@@ -8,15 +8,16 @@ struct Camera {
 }
 @group(0) @binding(0) var<uniform> camera: Camera;
 
+// What goes from vertices to fragments. `at` is a position, or the place of the light where that is found at vertices.
 struct Solid {
     @builtin(position) @invariant clip: vec4f,
-    @location(0) position: vec3f,
+    @location(0) at: vec3f,
     @location(1) @interpolate(flat) normal: vec3f,
 }
 
 struct Cut {
     @builtin(position) @invariant clip: vec4f,
-    @location(0) position: vec3f,
+    @location(0) at: vec3f,
     @location(1) @interpolate(flat) normal: vec3f,
     @location(2) uv: vec2f,
 }

@@ -197,7 +197,8 @@ fn cut_outs_have_holes_in_perspective() {
     let hits = resolve(&target, &card, &clip.inverse(), DVec3::ZERO);
     let depths: Vec<f64> = hits.iter().flatten().map(|hit| -hit.position.z).collect();
     let (least, most) = depths.iter().fold((f64::MAX, 0.0_f64), |(low, high), &z| (low.min(z), high.max(z)));
-    // v = 1/2 lies at depth 7, where a row is 0.2 m; the repeat filters the last texel row (1/8 m deep) into the far end
+    // v = 1/2 lies at depth 7, where a row is 0.2 m; the repeat filters the last texel row (1/8 m deep) into the far
+    // end
     assert!((7.0..7.25).contains(&least) && (10.7..11.0).contains(&most), "solid from {least} to {most}");
 
     // Without the mask the near half shows too

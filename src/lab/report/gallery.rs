@@ -141,7 +141,8 @@ fn figures(row: &Row) -> String {
     format!("mae\u{a0}{mae} · wrong\u{a0}{wrong}\u{a0}%")
 }
 
-/// A picture inside the page, as large as another one and decoded when it comes into view; an empty one is said to be missing.
+/// A picture inside the page, as large as another one and decoded when it comes into view;
+/// an empty one is said to be missing.
 fn image(png: &[u8], kind: &str, alt: &str, like: &[u8]) -> String {
     if png.is_empty() {
         let what = match kind {
@@ -151,7 +152,8 @@ fn image(png: &[u8], kind: &str, alt: &str, like: &[u8]) -> String {
         };
         return format!("<span class=\"missing {kind}\">no {what}</span>");
     }
-    // The size keeps the page from jumping while pictures appear; a PNG without one shows as what it is, a broken picture.
+    // The size keeps the page from jumping while pictures appear; a PNG without one shows as what it is,
+    // a broken picture.
     let size = image::ImageReader::with_format(Cursor::new(like), image::ImageFormat::Png).into_dimensions();
     let size = size.map_or(String::new(), |(width, height)| format!(" width=\"{width}\" height=\"{height}\""));
     format!(

@@ -107,8 +107,8 @@ impl Frame {
 
 /// Draws the curves as one SVG document.
 ///
-/// Nothing is dropped: points without a figure are listed below the plot, points at zero sit on its edge and are counted,
-/// and a plot without any figure says so.
+/// Nothing is dropped: points without a figure are listed below the plot, points at zero sit on its edge and are
+/// counted, and a plot without any figure says so.
 #[must_use]
 pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
     // Find the ranges of the values that can be drawn.

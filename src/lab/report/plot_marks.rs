@@ -25,7 +25,8 @@ const LEGEND_LINE: f64 = 19.0;
 const NOTE_LINE: f64 = 15.0;
 /// Width of a letter of a note, CSS pixels.
 const NOTE_LETTER: f64 = 6.0;
-/// Dash patterns; the first is solid. With five markers, eight colours and three dashes no two of 120 curves look alike.
+/// Dash patterns; the first is solid. With five markers,
+/// eight colours and three dashes no two of 120 curves look alike.
 const DASHES: [&str; 3] = ["none", "7 3", "2 3"];
 /// Different markers.
 const SHAPES: usize = 5;
@@ -69,7 +70,8 @@ pub(super) fn apology(error: &dyn Display) -> String {
     format!("<text x=\"2\" y=\"40\">This plot could not be drawn: {}</text>\n", Escaped(&error.to_string()))
 }
 
-/// Draws the floors as dashed lines across the frame, each with its name on the roomier side; returns the names' places.
+/// Draws the floors as dashed lines across the frame, each with its name on the roomier side;
+/// returns the names' places.
 pub(super) fn floors(body: &mut String, marks: &Marks, axes: &Axes, frame: &Frame) -> Vec<Taken> {
     let (left, right) = (f64::from(frame.x.start), f64::from(frame.x.end));
     let mut taken = Vec::new();

@@ -10,8 +10,8 @@ const LEAST_SPAN: f64 = 5.0;
 const NO_DATA: Range<f64> = 0.1..1.0;
 /// Which multiples of each power of ten carry a label, from coarse to fine.
 const LABELLED: [&[u8]; 2] = [&[1], &[1, 2, 5]];
-/// Up to so many labels are too few to read a value off a logarithmic axis; the finer choice is taken, and its labels do
-/// not touch as long as this stays below 4.
+/// Up to so many labels are too few to read a value off a logarithmic axis; the finer choice is taken, and its labels
+/// do not touch as long as this stays below 4.
 const ENOUGH_LABELS: usize = 3;
 /// Powers of ten within are written out (0.001, 10000); beyond, as 10⁻⁴.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;

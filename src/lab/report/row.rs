@@ -8,7 +8,8 @@ const LEFT_OUT_SEPARATOR: &str = " | ";
 /// One technique, on one case, with one map size: what it cost and how far its picture is from the truth.
 ///
 /// The fields are the columns of `results.csv`, in order. A failed run is a row too: its figures are NaN and
-/// [`left_out`](Row::left_out) holds the error. The default is a row on which nothing was measured: figures NaN, counts 0.
+/// [`left_out`](Row::left_out) holds the error. The default is a row on which nothing was measured: figures NaN,
+/// counts 0.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
     /// Scene: a built-in name or the stem of the file it came from.
@@ -83,7 +84,8 @@ pub struct Row {
     /// Footprint that the fit predicted, screen pixels per texel (> 0).
     #[serde(deserialize_with = "nan_when_absent")]
     pub predicted_px: f64,
-    /// Everything that the technique left out, clamped or fell back from, one entry each, verbatim; the error of a failed run.
+    /// Everything that the technique left out, clamped or fell back from, one entry each, verbatim;
+    /// the error of a failed run.
     #[serde(serialize_with = "join_entries", deserialize_with = "split_entries")]
     pub left_out: Vec<String>,
 }
@@ -132,8 +134,8 @@ impl Row {
         [self.rmse, self.mae, self.wrong, self.wrong_center].iter().all(|figure| figure.is_nan())
     }
 
-    /// Mean absolute error above the floor (`mae - floor_mae`): the figure for filtered techniques. Slightly negative when
-    /// filtering beats a perfect single sample.
+    /// Mean absolute error above the floor (`mae - floor_mae`): the figure for filtered techniques. Slightly negative
+    /// when filtering beats a perfect single sample.
     #[must_use]
     pub fn excess(&self) -> f64 {
         self.mae - self.floor_mae

@@ -6,7 +6,8 @@ use super::column::{self, Cell, Column};
 use super::html::Escaped;
 use super::{Row, SceneSection};
 
-/// The columns in the order of the page: what is asked for most stands first. Scene and case are in the section's heading.
+/// The columns in the order of the page: what is asked for most stands first.
+/// Scene and case are in the section's heading.
 const SHOWN: [&str; 28] = [
     "technique",
     "size",

@@ -9,7 +9,7 @@ use antumbra::{Pcf, ViewUniforms};
 use glam::Vec3;
 
 /// Half a step of f32 at 1.
-const ULP: f64 = 0.5 * f32::EPSILON as f64;
+pub(crate) const ULP: f64 = 0.5 * f32::EPSILON as f64;
 
 /// A value, and by how much a result of f32 arithmetic may differ from that of other f32 arithmetic.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,132 @@
+//! Each outcome of the shader against its twin's.
+
+use antumbra::encoding::depth::{
+    DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter, antumbra_tap,
+    antumbra_visible,
+};
+use antumbra::{Pcf, ViewUniforms, WgslKey};
+use glam::{DVec2, Mat4, Vec2, Vec4};
+
+use crate::rounded::{self, ULP};
+use crate::{Case, Outcome, Worst, bound};
+
+/// Weights may be off by a step of the sampler along both axes; the rest is rounding.
+const WEIGHT_TOLERANCE: f32 = 2.0 / 256.0 + 1e-5;
+
+pub(crate) fn lookup(key: WgslKey, case: &Case, outcome: &Outcome, worst: &mut Worst) {
+    let (position, normal) = (case.position.truncate(), case.normal.truncate());
+    let Some((twin, bound)) = bound::lookup(key, &case.view, position, normal) else {
+        worst.undecided += 1;
+        return;
+    };
+    worst.behind += usize::from(rounded::behind(&case.view, position, normal));
+    for (name, shader, twin, bound) in [
+        ("uv.x", outcome.uv.x, twin.uv.x, bound.uv[0]),
+        ("uv.y", outcome.uv.y, twin.uv.y, bound.uv[1]),
+        ("depth", outcome.depth, twin.depth, bound.depth),
+        ("slope.x", outcome.slope.x, twin.slope.x, bound.slope[0]),
+        ("slope.y", outcome.slope.y, twin.slope.y, bound.slope[1]),
+    ] {
+        let difference = (f64::from(shader) - f64::from(twin)).abs();
+        // Adapters may flush denormal numbers to zero.
+        let bound = bound + f64::from(f32::MIN_POSITIVE);
+        assert!(difference <= bound, "{name}: {shader} and {twin}, {difference:e} > {bound:e}: {case:?}");
+        worst.lookup = worst.lookup.max(difference / bound);
+    }
+}
+
+pub(crate) fn caster(case: &Case, outcome: &Outcome) {
+    let view = &case.view;
+    let rows = [view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render];
+    let matrix = Mat4::from_cols_array_2d(&rows);
+    let position = case.position.truncate();
+    let twin = antumbra_caster(matrix, position);
+    let size = |column: usize| -> f64 {
+        let at = position.extend(1.0);
+        (0..4).map(|row| f64::from(rows[row][column] * at[row]).abs()).sum()
+    };
+    for component in 0..4 {
+        let difference = f64::from(outcome.clip[component] - twin[component]).abs();
+        assert!(difference <= 16.0 * ULP * size(component), "clip {component}: {outcome:?} and {twin}");
+    }
+    // Linear depth of a vertex.
+    let row = Vec4::from_array(view.depth_from_render);
+    let difference = f64::from(outcome.caster_depth - antumbra_caster_depth(row, position)).abs();
+    let size = f64::from((row * position.extend(1.0)).abs().element_sum());
+    assert!(difference <= 16.0 * ULP * size, "caster depth: {outcome:?}, {difference:e}");
+}
+
+/// Values of a function of a lookup on all sides of what rounding may do to it.
+fn band(look: &Lookup, uv: [f64; 2], depth: f64, value: impl Fn(&Lookup) -> f32) -> (f32, f32) {
+    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    for x in [-1.0, 0.0, 1.0] {
+        for y in [-1.0, 0.0, 1.0] {
+            for z in [-1.0, 0.0, 1.0] {
+                let moved = look.uv.as_dvec2() + DVec2::new(x * uv[0], y * uv[1]);
+                let depth = (f64::from(look.depth) + z * depth) as f32;
+                let value = value(&Lookup { uv: moved.as_vec2(), depth, slope: look.slope });
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+    }
+    (low, high)
+}
+
+pub(crate) fn filters(filter: Pcf, map: &DepthMap, case: &Case, outcome: &Outcome, worst: &mut Worst) {
+    let look = Lookup {
+        uv: Vec2::new(case.look.x, case.look.y),
+        depth: case.look.z,
+        slope: Vec2::new(case.slope_offset.x, case.slope_offset.y),
+    };
+    // Coordinates are scaled by the size and moved by half a texel; depths move along the slope by up to three texels.
+    let uv = [look.uv.x, look.uv.y].map(|place| 8.0 * ULP * (f64::from(place).abs() + 4.0 / f64::from(map.size.x)));
+    let depth = 8.0 * ULP * f64::from(look.depth.abs() + 4.0 * look.slope.abs().element_sum());
+    let mut check = |name: &str, shader: f32, scale: f32, value: &dyn Fn(&Lookup) -> f32| {
+        within(name, shader, band(&look, uv, depth, value), scale, case, worst);
+    };
+    check("filter", outcome.filtered, 1.0, &|look| antumbra_filter(filter, map, look));
+    let offset = Vec2::new(case.slope_offset.z, case.slope_offset.w);
+    if matches!(filter, Pcf::Box3x3 | Pcf::Box5x5) {
+        check("tap", outcome.tap, 1.0, &|look| antumbra_tap(map, look, offset));
+    }
+    if filter == Pcf::Box5x5 {
+        let (x, weight) = (case.row.truncate(), case.weight.truncate());
+        let scale = weight.element_sum();
+        check("row", outcome.row, scale, &|look| antumbra_box_row(map, look, x, weight, case.row.w));
+    }
+}
+
+pub(crate) fn visible(key: WgslKey, map: &DepthMap, case: &Case, view: &ViewUniforms, shader: f32, worst: &mut Worst) {
+    let filter = key.filter;
+    let (position, normal) = (case.position.truncate(), case.normal.truncate());
+    assert!((0.0..=1.0 + WEIGHT_TOLERANCE).contains(&shader), "{shader} is no share: {case:?}");
+    let Some((look, bound)) = bound::lookup(key, view, position, normal) else { return };
+    // A place that is in doubt by texels has more values than those around it.
+    if bound.uv[0].max(bound.uv[1]) > 0.25 / f64::from(map.size.x) {
+        worst.undecided += 1;
+        return;
+    }
+    // Beside the lookup's own error, what the filter does to it.
+    let uv = core::array::from_fn(|axis| bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0));
+    let slope = f64::from(look.slope.abs().element_sum());
+    let depth =
+        bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
+    let value = |look: &Lookup| antumbra_filter(filter, map, look);
+    // The twin itself is the middle of the band.
+    let twin = antumbra_visible(key, view, map, position, normal);
+    assert_eq!(twin.to_bits(), value(&look).to_bits(), "{case:?}");
+    within("visible", shader, band(&look, uv, depth, value), 1.0, case, worst);
+}
+
+fn within(name: &str, shader: f32, (low, high): (f32, f32), scale: f32, case: &Case, worst: &mut Worst) {
+    let tolerance = WEIGHT_TOLERANCE * scale;
+    assert!(
+        shader >= low - tolerance && shader <= high + tolerance,
+        "{name}: {shader} not in [{low}, {high}]: {case:?}"
+    );
+    if high - low > tolerance {
+        worst.doubtful += 1;
+    } else {
+        worst.weight = worst.weight.max((low - shader).max(shader - high) / scale);
+    }
+}

@@ -1,0 +1,210 @@
+//! The text in an engine's hands: linked, composed, translated, and made into pipelines.
+
+use antumbra::transpile::{Glsl, Shader, naga};
+use antumbra::wgsl::{self, Bindings};
+use antumbra::{MapShape, WgslKey, gpu};
+
+use crate::host::{PLACES, entries, host, stages};
+use crate::libraries;
+
+#[test]
+fn links_into_a_host_shader() {
+    for key in WgslKey::all() {
+        for place in PLACES {
+            let shader = Shader::parse(&host(key, place)).unwrap_or_else(|error| panic!("{key:?} {place:?}: {error}"));
+            // The three bindings are where the caller wants them.
+            let found: Vec<_> = shader.module.global_variables.iter().filter_map(|(_, v)| v.binding).collect();
+            for binding in place.first..place.first + wgsl::BINDING_COUNT {
+                let expected = naga::ResourceBinding { group: place.group, binding };
+                assert_eq!(found.iter().filter(|at| **at == expected).count(), 1, "{key:?}: {expected:?} in {found:?}");
+            }
+            // A caster alone needs no map.
+            let caster = shader.keep(&["caster"]).unwrap();
+            assert_eq!(caster.module.global_variables.len(), 1, "{key:?}");
+            let globals = |entry: &str| -> Vec<_> {
+                let kept = shader.keep(&[entry]).unwrap();
+                kept.module.global_variables.iter().filter_map(|(_, variable)| variable.name.clone()).collect()
+            };
+            match key.shape {
+                // In two stages, vertices read the uniforms and no map, and fragments the map and no uniforms.
+                MapShape::Affine => {
+                    assert_eq!(globals("placing"), ["antumbra_uniforms", "view"], "{key:?}");
+                    assert_eq!(globals("placed"), ["antumbra_map", "antumbra_compare"], "{key:?}");
+                }
+                // What casters write comes to their fragments from the vertices.
+                MapShape::Projective => assert_eq!(globals("thrown"), [""; 0], "{key:?}"),
+                // Here casters have no fragments.
+                MapShape::ProjectiveDepth => assert_eq!(globals("caster"), ["view"], "{key:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn composes_unchanged_under_naga_oil() {
+    use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor};
+    for (key, text, _) in libraries() {
+        let mut composer = Composer::default();
+        composer
+            .add_composable_module(ComposableModuleDescriptor {
+                source: &text,
+                file_path: "antumbra.wgsl",
+                as_name: Some("antumbra".to_owned()),
+                ..Default::default()
+            })
+            .unwrap_or_else(|error| panic!("{key:?}: {error}"));
+        let source = "
+            #import antumbra::{AntumbraUniforms, antumbra_visible}
+            @group(2) @binding(0) var<uniform> uniforms: AntumbraUniforms;
+            @group(2) @binding(1) var map: texture_depth_2d;
+            @group(2) @binding(2) var compare: sampler_comparison;
+            @fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
+                return vec4f(antumbra_visible(uniforms.view, map, compare, position, vec3f(0.0, 1.0, 0.0)));
+            }";
+        let module = composer
+            .make_naga_module(NagaModuleDescriptor { source, file_path: "host.wgsl", ..Default::default() })
+            .unwrap_or_else(|error| panic!("{key:?}: {error}"));
+        assert_eq!(module.entry_points.len(), 1, "{key:?}");
+    }
+}
+
+#[test]
+fn converts_to_other_languages() {
+    for (key, _, library) in libraries() {
+        let linked = Shader::parse(&host(key, PLACES[0])).unwrap();
+        let stages: Vec<_> = entries(key.shape).iter().map(|entry| linked.keep(&[entry]).unwrap()).collect();
+        for shader in std::iter::once(&library).chain(&stages) {
+            assert_eq!(shader.spirv().unwrap()[0], 0x0723_0203, "{key:?}");
+            assert!(shader.hlsl().unwrap().len() > 100, "{key:?}");
+            assert!(shader.msl().unwrap().starts_with("// language: metal"), "{key:?}");
+        }
+        for version in Glsl::ALL {
+            let text =
+                library.glsl_library(version).unwrap_or_else(|error| panic!("{key:?} {version:?}: {error}")).text;
+            assert!(text.contains("antumbra_visible(") && text.contains("sampler2DShadow"), "{key:?} {version:?}");
+            let fragment = linked.glsl(version, "fragment").unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            let textures: Vec<_> = fragment.samplers.iter().map(|(_, texture)| texture.as_str()).collect();
+            assert!(textures.contains(&"antumbra_map") && textures.contains(&"map"), "{key:?}: {textures:?}");
+            assert!(fragment.blocks.iter().any(|(_, block)| block == "antumbra_uniforms"), "{key:?}");
+            let [first, second] = match key.shape {
+                MapShape::Affine => ["placing", "placed"],
+                MapShape::Projective => ["caster", "thrown"],
+                MapShape::ProjectiveDepth => continue,
+            };
+            let first = linked.glsl(version, first).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            assert!(first.samplers.is_empty() && !first.blocks.is_empty(), "{key:?}: {:?}", first.samplers);
+            let second = linked.glsl(version, second).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+            let samplers = usize::from(key.shape == MapShape::Affine);
+            assert!(second.blocks.is_empty() && second.samplers.len() == samplers, "{key:?}: {:?}", second.blocks);
+            let writes_depth = second.text.contains("gl_FragDepth");
+            assert_eq!(writes_depth, key.shape == MapShape::Projective, "{key:?}: {}", second.text);
+        }
+    }
+}
+
+/// wgpu accepts the text with the layouts of `antumbra::gpu`, without any GPU.
+#[test]
+fn pipelines_accept_the_layouts() {
+    use gpu::wgpu;
+    let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+    for key in WgslKey::all() {
+        let descriptor = gpu::ShadowMapsDescriptor { label: None, key, map: antumbra::MapBudget::one(64) };
+        let maps = gpu::ShadowMaps::new(&device, &descriptor).unwrap();
+        // The library's own group, and its entries behind seven of the engine's in one group.
+        let own = wgsl::module(key, Bindings { group: 0, first: 0 });
+        let merged = wgsl::module(key, Bindings { group: 0, first: 7 });
+        let entries = gpu::layout_entries(key, 7, wgpu::ShaderStages::VERTEX_FRAGMENT);
+        let layout =
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+        let entries = maps.bind_entries(7);
+        let _ =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+        for (text, layout) in [(own, maps.bind_group_layout()), (merged, &layout)] {
+            let stages: &[_] = match key.shape {
+                MapShape::Affine => &[("vertex", Some("fragment")), ("placing", Some("placed")), ("caster", None)],
+                MapShape::Projective => &[("vertex", Some("fragment")), ("caster", Some("thrown"))],
+                MapShape::ProjectiveDepth => &[("vertex", Some("fragment")), ("caster", None)],
+            };
+            for stages in stages {
+                make_pipeline(
+                    &device,
+                    &(text.clone() + &host_on_wgpu(key.shape)),
+                    layout,
+                    maps.caster_layout(),
+                    *stages,
+                );
+            }
+        }
+    }
+    drop(queue);
+}
+
+/// An engine's shader for [`make_pipeline`]: group 1 is `caster_bind_group`.
+fn host_on_wgpu(shape: MapShape) -> String {
+    let (group, matrix) = match shape {
+        MapShape::Affine | MapShape::ProjectiveDepth => {
+            ("@group(1) @binding(0) var<uniform> clip_from_render: mat4x4f;", "clip_from_render")
+        }
+        MapShape::Projective => (
+            "struct View { clip_from_render: mat4x4f, depth_from_render: vec4f }
+            @group(1) @binding(0) var<uniform> view: View;",
+            "view.clip_from_render",
+        ),
+    };
+    let receiver = "
+        @vertex fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+            return antumbra_caster(MATRIX, position);
+        }
+        @fragment fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+            return vec4f(antumbra_visibility(at.xyz, vec3f(0.0, 1.0, 0.0), 1.0));
+        }"
+    .replace("MATRIX", matrix);
+    [group, &receiver, &stages(shape, matrix, "view.depth_from_render")].concat()
+}
+
+/// A pipeline of a vertex entry point and, but for casters of affine maps, a fragment entry point. Casters write no
+/// colour.
+fn make_pipeline(
+    device: &gpu::wgpu::Device,
+    text: &str,
+    maps: &gpu::wgpu::BindGroupLayout,
+    casters: &gpu::wgpu::BindGroupLayout,
+    (vertex, fragment): (&str, Option<&str>),
+) {
+    use gpu::wgpu;
+    let colour = [Some(wgpu::TextureFormat::Rgba8Unorm.into())];
+    let targets: &[_] = if fragment == Some("thrown") { &[] } else { &colour };
+    let source = wgpu::ShaderSource::Wgsl(text.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(maps), Some(casters)],
+        immediate_size: 0,
+    });
+    // A mismatch is a validation error, which panics here.
+    let _ = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 24,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+            })],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(gpu::depth_stencil_state()),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: fragment.map(|entry| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+}

@@ -1,0 +1,18 @@
+//! The shader contract: what every text of the library promises to the engines that paste it into theirs.
+
+mod engines;
+mod host;
+mod text;
+mod walkers;
+
+use antumbra::transpile::Shader;
+use antumbra::{WgslKey, wgsl};
+
+/// Every key with its library: the fragments, without bindings.
+fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
+    WgslKey::all().map(|key| {
+        let text = wgsl::library(key).join("\n");
+        let shader = Shader::parse(&text).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+        (key, text, shader)
+    })
+}
