@@ -9,6 +9,9 @@
 //! ```
 //!
 //! The second summand is affine over the picture.
+//!
+//! # References
+//! - Cyrus & Beck, *Generalized two- and three-dimensional clipping*, 1978: a line against one half-space after the other.
 
 use glam::{DVec2, DVec3};
 
