@@ -55,6 +55,14 @@ impl Cells {
         Ok(Self { all, flawless: flawless.len(), failed: failed.len() })
     }
 
+    /// How well prediction ranks every size and strength of a case, one number a case of `set`: Spearman's rank correlation.
+    pub(crate) fn agreement_within_cases(&self, set: &str) -> Vec<f64> {
+        let cases =
+            self.all.chunk_by(|a, b| (&a.set, &a.case) == (&b.set, &b.case)).filter(|cells| cells[0].set == set);
+        let ranks = cases.map(|cells| rank_correlation(&cells.iter().flat_map(Cell::pairs).collect::<Vec<_>>()));
+        ranks.filter(|rank| rank.is_finite()).collect()
+    }
+
     pub(crate) fn of_set<'a>(&'a self, set: &'a str) -> impl Iterator<Item = &'a Cell> {
         self.all.iter().filter(move |cell| cell.set == set)
     }
@@ -97,7 +105,12 @@ impl Cell {
 
     /// How well prediction ranks the strengths of the sweep: Spearman's rank correlation.
     pub(crate) fn agreement(&self) -> f64 {
-        rank_correlation(&self.swept.iter().map(|record| [record.predicted, record.wrong]).collect::<Vec<_>>())
+        rank_correlation(&self.pairs().collect::<Vec<_>>())
+    }
+
+    /// Predicted and measured errors of the sweep.
+    fn pairs(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.swept.iter().map(|record| [record.predicted, record.wrong])
     }
 
     /// Predicted and measured error of a picture, as multiples of those without a warp.
