@@ -1,12 +1,3 @@
-// Where to look, and what to compare with.
-struct AntumbraLookup {
-    uv: vec2f,
-    // Light depth of the receiver after its bias.
-    depth: f32,
-    // Change of that depth over one texel step in u and in v, along the receiver's plane.
-    slope: vec2f,
-}
-
 // Lifts a receiver off its own texels (bias.rs derives it) and finds its place in an affine map.
 // reach: texels from the receiver to the farthest texel read; tap_reach: the same for one tap of the filter.
 fn antumbra_lookup(view: AntumbraView, position: vec3f, normal: vec3f, reach: f32, tap_reach: f32) -> AntumbraLookup {

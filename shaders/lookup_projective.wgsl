@@ -1,12 +1,3 @@
-// Where to look, and what to compare with.
-struct AntumbraLookup {
-    uv: vec2f,
-    // Light depth of the receiver after its bias.
-    depth: f32,
-    // Change of that depth over one texel step in u and in v, along the receiver's plane.
-    slope: vec2f,
-}
-
 // A texel may outgrow what lies within reach by half; maps that are warped more than that are not made.
 const ANTUMBRA_MOST_GROWTH: f32 = 0.5;
 

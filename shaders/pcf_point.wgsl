@@ -6,5 +6,5 @@ const ANTUMBRA_TAP_REACH: f32 = 0.5;
 fn antumbra_filter(map: texture_depth_2d, compare: sampler_comparison, look: AntumbraLookup) -> f32 {
     let size = vec2f(textureDimensions(map));
     let centre = (floor(look.uv * size) + 0.5) / size;
-    return textureSampleCompareLevel(map, compare, centre, min(look.depth, 1.0));
+    return antumbra_sample(map, compare, look, centre, look.depth);
 }

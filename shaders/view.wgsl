@@ -18,4 +18,8 @@ struct AntumbraView {
     across_u: vec4f,
     across_v: vec4f,
     across_w: vec4f,
+    // Several maps: nearest and farthest eye depth that the view serves; where it begins to give way to the next one, and
+    // one over the length of that band. By containment: nothing, nothing, texture coordinates within the rim of `rect`
+    // where it begins to give way, and one over the width of that band.
+    domain: vec4f,
 }

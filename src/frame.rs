@@ -10,19 +10,48 @@ use crate::scene::{Aabb, MapBudget};
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
 
-/// Most lines of [`ShadowFrame::left_out`]: a plan of 8 views has at most two reasons a view.
-pub const MAX_LEFT_OUT: usize = 2 * MAX_VIEWS;
+/// Most lines of [`ShadowFrame::left_out`]: five a view (receivers, window, border, and two of the warp), and five of the whole.
+pub const MAX_LEFT_OUT: usize = 5 * MAX_VIEWS + 5;
 
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;
 
 /// Which shader text a technique needs. A byte or two; compare it with the key a pipeline was built for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct WgslKey {
     /// How the map is filtered.
     pub filter: Pcf,
     /// Whether positions are divided by w on their way into the map.
     pub shape: MapShape,
+    /// Most maps of a frame, 1 to [`MAX_VIEWS`]: the length of the uniform array and of the layers. 1 is a plain map, and
+    /// a shader without arrays or loops.
+    pub maps: u8,
+    /// How a receiver finds its map among several; [`Select::Depth`] for one map.
+    pub select: Select,
+    /// Whether neighbouring maps are blended into each other; never for one map.
+    pub blend: bool,
+}
+
+impl Default for WgslKey {
+    fn default() -> Self {
+        Self { filter: Pcf::default(), shape: MapShape::default(), maps: 1, select: Select::default(), blend: false }
+    }
+}
+
+/// How a receiver finds its map among several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Select {
+    /// By its eye depth: one comparison a map, one lookup.
+    #[default]
+    Depth,
+    /// The finest map that holds it and what its filter reads: near maps reach beyond their own depths. One lookup position
+    /// a map until it is found.
+    Finest,
+}
+
+impl Select {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Depth, Self::Finest];
 }
 
 /// The kind of transformation that leads into a map.
@@ -220,7 +249,7 @@ impl CullVolume {
     }
 }
 
-/// The receiver shader's uniform block. A key for one view reads only its first element (160 bytes).
+/// The receiver shader's uniform block. A key reads as many elements as it has maps (176 bytes each).
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowUniforms {
@@ -261,6 +290,10 @@ pub struct ViewUniforms {
     pub across_v: [f32; 4],
     /// Warped maps: W of `across_u`.
     pub across_w: [f32; 4],
+    /// Several maps, found by depth: nearest and farthest eye depth that the view serves (the last one everything behind it);
+    /// the depth at which it begins to give way to the next one, and one over the length of that band (0: no band).
+    /// Found by containment: the last member is one over the width of the band along its rim, texture coordinates.
+    pub domain: [f32; 4],
 }
 
 impl ViewUniforms {
@@ -276,5 +309,6 @@ impl ViewUniforms {
         across_u: [0.0; 4],
         across_v: [0.0; 4],
         across_w: [0.0; 4],
+        domain: [0.0, f32::MAX, 0.0, 0.0],
     };
 }

@@ -96,8 +96,8 @@ pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use error::FitError;
 pub use fit::bias::Bias;
 pub use frame::{
-    CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, ShadowFrame, ShadowUniforms,
-    ShadowView, TexelSize, ViewUniforms, WgslKey,
+    CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, Select, ShadowFrame,
+    ShadowUniforms, ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
 pub use light::Light;
 pub use remix::{DepthLaw, Encoding, Remix, Stabilise};

@@ -95,7 +95,7 @@ impl ShadowTechnique for Remix {
             (true, DepthLaw::Linear) => MapShape::Projective,
             (true, DepthLaw::Projective) => MapShape::ProjectiveDepth,
         };
-        WgslKey { filter, shape }
+        WgslKey { filter, shape, ..WgslKey::default() }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {

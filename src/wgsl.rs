@@ -9,9 +9,10 @@
 //! ```
 //!
 //! `position` is in render space (world − `origin`), `normal` is the unit geometric normal on the side that is looked
-//! at, `view_depth` the eye depth (used by techniques with several maps). The value is the share of light that arrives.
+//! at, `view_depth` the eye depth (read by techniques with several maps that are told apart by depth). The value is the
+//! share of light that arrives.
 //!
-//! The same in two stages, for affine maps (uniform ones; see [`MapShape`]) and engines that want the cheapest
+//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]) and engines that want the cheapest
 //! fragments:
 //!
 //! ```wgsl
@@ -29,10 +30,11 @@
 //! `antumbra_visibility`. Choose the side that is looked at from the eye position; all vertices of a face then agree.
 
 use core::fmt::Write as _;
+use std::borrow::Cow;
 
 use arrayvec::ArrayVec;
 
-use crate::frame::{MapShape, Pcf, WgslKey};
+use crate::frame::{MAX_VIEWS, MapShape, Pcf, Select, WgslKey};
 
 /// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,17 +49,34 @@ pub struct Bindings {
 pub const BINDING_COUNT: u32 = 3;
 
 /// Most fragments of a key.
-const MAX_FRAGMENTS: usize = 8;
+const MAX_FRAGMENTS: usize = 11;
 
 /// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
 ///
-/// The texts live in the binary: no allocation.
+/// The texts live in the binary: no allocation for one map. For several, what reads the map reads an array of them
+/// (`texture_depth_2d_array` in place of `texture_depth_2d`), and those texts are made anew.
 #[must_use]
-pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
+pub fn library(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
+    let read = |text: &'static str| {
+        if key.maps > 1 { text.replace("texture_depth_2d,", "texture_depth_2d_array,").into() } else { text.into() }
+    };
+    fragments(key).into_iter().map(read).collect()
+}
+
+fn fragments(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     let mut fragments = ArrayVec::new();
+    // What is known of a map, and the maps.
     fragments.push(include_str!("../shaders/view.wgsl"));
-    fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
+    if key.maps > 1 {
+        fragments.push(MAPS[usize::from(key.maps.min(MAX_VIEWS as u8)) - 2]);
+        fragments.push(include_str!("../shaders/uniforms_many.wgsl"));
+        fragments.push(include_str!("../shaders/map_many.wgsl"));
+    } else {
+        fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
+        fragments.push(include_str!("../shaders/map_one.wgsl"));
+    }
     fragments.push(CASTER);
+    // Where a receiver is looked up.
     match key.shape {
         MapShape::Affine => fragments.push(include_str!("../shaders/lookup.wgsl")),
         MapShape::Projective => fragments.push(include_str!("../shaders/law_linear.wgsl")),
@@ -66,6 +85,7 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
     if key.shape != MapShape::Affine {
         fragments.push(include_str!("../shaders/lookup_projective.wgsl"));
     }
+    // What is read there.
     match key.filter {
         Pcf::Point => fragments.push(include_str!("../shaders/pcf_point.wgsl")),
         Pcf::Hardware2x2 => fragments.push(include_str!("../shaders/pcf_hardware.wgsl")),
@@ -79,11 +99,27 @@ pub fn library(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
         }
     }
     fragments.push(match key.shape {
-        MapShape::Affine => include_str!("../shaders/visibility_one.wgsl"),
-        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/visibility_one_projective.wgsl"),
+        MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
+        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
+    });
+    fragments.push(if key.maps > 1 {
+        include_str!("../shaders/visibility_many.wgsl")
+    } else {
+        include_str!("../shaders/visibility_one.wgsl")
     });
     fragments
 }
+
+/// The number of maps, as the shader knows it, from 2 on.
+const MAPS: [&str; MAX_VIEWS - 1] = [
+    "const ANTUMBRA_MAPS: u32 = 2u;",
+    "const ANTUMBRA_MAPS: u32 = 3u;",
+    "const ANTUMBRA_MAPS: u32 = 4u;",
+    "const ANTUMBRA_MAPS: u32 = 5u;",
+    "const ANTUMBRA_MAPS: u32 = 6u;",
+    "const ANTUMBRA_MAPS: u32 = 7u;",
+    "const ANTUMBRA_MAPS: u32 = 8u;",
+];
 
 /// The caster stage alone, for the shader of a depth pass: `antumbra_caster(clip_from_render, position)`, and for
 /// warped maps `antumbra_caster_depth(depth_from_render, position)`,
@@ -98,6 +134,13 @@ pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
 
+/// What an engine calls, for one map.
+const ONE_MAP: &str = "
+fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
+    return antumbra_visible(antumbra_uniforms.view, antumbra_map, antumbra_compare, position, normal);
+}
+";
+
 /// The lookup in two stages, for affine maps: what is linear in position can be computed at vertices.
 const TWO_STAGES: &str = "
 fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup {
@@ -109,30 +152,34 @@ fn antumbra_lit(look: AntumbraLookup) -> f32 {
 }
 ";
 
-/// The whole text for an engine's shader: library, bindings, `antumbra_visibility`, and for affine maps the same in two
-/// stages.
+/// The whole text for an engine's shader: library, bindings, `antumbra_visibility`, and for one affine map the same in
+/// two stages.
 ///
 /// Cold path: call it when options change, not per frame.
 #[must_use]
 pub fn module(key: WgslKey, bindings: Bindings) -> String {
     let Bindings { group, first } = bindings;
     let [uniforms, map, compare] = [0, 1, 2].map(|offset| first.saturating_add(offset));
+    let texture = if key.maps > 1 { "texture_depth_2d_array" } else { "texture_depth_2d" };
     let mut text = String::new();
     for fragment in library(key) {
-        text.push_str(fragment);
+        text.push_str(&fragment);
         text.push('\n');
     }
     let _ = write!(
         text,
         "@group({group}) @binding({uniforms}) var<uniform> antumbra_uniforms: AntumbraUniforms;\n\
-         @group({group}) @binding({map}) var antumbra_map: texture_depth_2d;\n\
-         @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n\
-         \n\
-         fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {{\n\
-         \x20   return antumbra_visible(antumbra_uniforms.view, antumbra_map, antumbra_compare, position, normal);\n\
-         }}\n"
+         @group({group}) @binding({map}) var antumbra_map: {texture};\n\
+         @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n"
     );
-    if key.shape == MapShape::Affine {
+    text.push_str(match (key.maps > 1, key.select, key.blend) {
+        (false, ..) => ONE_MAP,
+        (true, Select::Depth, false) => include_str!("../shaders/select_depth.wgsl"),
+        (true, Select::Depth, true) => include_str!("../shaders/select_depth_blend.wgsl"),
+        (true, Select::Finest, false) => include_str!("../shaders/select_finest.wgsl"),
+        (true, Select::Finest, true) => include_str!("../shaders/select_finest_blend.wgsl"),
+    });
+    if key.maps == 1 && key.shape == MapShape::Affine {
         text.push_str(TWO_STAGES);
     }
     text
@@ -141,6 +188,13 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
 impl WgslKey {
     /// Every key, for tests and for engines that build their pipelines up front.
     pub fn all() -> impl Iterator<Item = Self> {
-        MapShape::ALL.into_iter().flat_map(|shape| Pcf::ALL.into_iter().map(move |filter| Self { filter, shape }))
+        let each_filter = |shape| Pcf::ALL.into_iter().map(move |filter| Self { filter, shape, ..Self::default() });
+        MapShape::ALL.into_iter().flat_map(each_filter).flat_map(|key| {
+            let many = (2..=MAX_VIEWS as u8).flat_map(move |maps| {
+                let ways = Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]);
+                ways.map(move |(select, blend)| Self { maps, select, blend, ..key })
+            });
+            core::iter::once(key).chain(many)
+        })
     }
 }

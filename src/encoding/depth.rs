@@ -1,5 +1,5 @@
-//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `pcf_*.wgsl`, `visibility_one*.wgsl`
-//! and `caster.wgsl`.
+//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `look_*.wgsl`, `pcf_*.wgsl`,
+//! `visibility_one.wgsl` and `caster.wgsl`.
 //!
 //! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins`
 //! holds them together on an adapter. The software renderer of the lab runs on them.
@@ -200,12 +200,17 @@ pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: V
 /// Twin of `antumbra_visible`: share of the light that reaches a point of render space.
 #[must_use]
 pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
+    antumbra_filter(key.filter, map, &antumbra_look(key, view, position, normal))
+}
+
+/// Twin of `antumbra_look`: where a receiver is looked up in a view, its bias applied.
+#[must_use]
+pub fn antumbra_look(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Lookup {
     let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
-    let look = match key.shape {
+    match key.shape {
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
         shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
-    };
-    antumbra_filter(key.filter, map, &look)
+    }
 }
 
 /// Place of a point between texel centres.

@@ -1,0 +1,28 @@
+// Texture coordinates from a place in a map to the nearest rim of what may be read there: negative outside, and where
+// the map does not reach as deep as the receiver.
+fn antumbra_room(view: AntumbraView, look: AntumbraLookup) -> f32 {
+    let reach = (ANTUMBRA_REACH + 1.0) * view.bias.w;
+    let room = min(look.uv - view.rect.xy, view.rect.zw - look.uv) - reach;
+    return select(-1.0, min(room.x, room.y), look.depth <= 1.0);
+}
+
+// The first map that holds the receiver and what its filter reads: maps are listed from the finest on. Towards its rim a
+// map gives way to the next one that holds it.
+fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
+    var lit = 0.0;
+    var rest = 1.0;
+    for (var index = 0u; index < ANTUMBRA_MAPS; index++) {
+        var look = antumbra_look(antumbra_uniforms.views[index], position, normal);
+        let room = antumbra_room(antumbra_uniforms.views[index], look);
+        if (room >= 0.0) {
+            look.layer = index;
+            let share = rest * min(room * antumbra_uniforms.views[index].domain.w, 1.0);
+            lit += share * antumbra_filter(antumbra_map, antumbra_compare, look);
+            rest -= share;
+            if (rest <= 0.0) {
+                break;
+            }
+        }
+    }
+    return lit + rest;
+}

@@ -1,0 +1,3 @@
+struct AntumbraUniforms {
+    views: array<AntumbraView, ANTUMBRA_MAPS>,
+}

@@ -1,0 +1,88 @@
+//! Several maps: the Rust twins of `shaders/select_*.wgsl` and `visibility_many.wgsl`.
+//!
+//! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation. The software
+//! renderer of the lab runs on them.
+//!
+//! # References
+//! - Engel, *Cascaded shadow maps*, `ShaderX5`, 2006 (by depth); Valient, *Stable rendering of cascaded shadow maps*,
+//!   `ShaderX6`, 2008 (by containment: the finest map that holds the point).
+
+use glam::{Vec2, Vec3};
+
+use super::depth::{CompareMap, Lookup, antumbra_filter, antumbra_look};
+use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
+
+/// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. `maps` are the layers, as many as
+/// the frame has views; a view without a map reads lit.
+#[must_use]
+pub fn antumbra_visibility<M: CompareMap>(
+    key: WgslKey,
+    uniforms: &ShadowUniforms,
+    maps: &[M],
+    position: Vec3,
+    normal: Vec3,
+    view_depth: f32,
+) -> f32 {
+    let last = usize::from(key.maps).clamp(1, MAX_VIEWS) - 1;
+    let visible = |index: usize| {
+        let look = antumbra_look(key, &uniforms.views[index], position, normal);
+        maps.get(index).map_or(1.0, |map| antumbra_filter(key.filter, map, &look))
+    };
+    if last == 0 {
+        return visible(0);
+    }
+    if key.select == Select::Finest {
+        return finest(key, uniforms, maps, last, position, normal);
+    }
+    let index = antumbra_index(uniforms, last, view_depth);
+    let lit = visible(index);
+    let [.., from, per_depth] = uniforms.views[index].domain;
+    let share = ((view_depth - from) * per_depth).clamp(0.0, 1.0);
+    if !key.blend || share == 0.0 {
+        return lit;
+    }
+    let next = if index < last { visible(index + 1) } else { 1.0 };
+    // As `mix` is defined.
+    lit * (1.0 - share) + next * share
+}
+
+/// Twin of `antumbra_index`: the first map whose depths hold the receiver; `last` is the last of all.
+#[must_use]
+pub fn antumbra_index(uniforms: &ShadowUniforms, last: usize, view_depth: f32) -> usize {
+    uniforms.views[..last].iter().filter(|view| view_depth > view.domain[1]).count()
+}
+
+/// Twin of `antumbra_room`: texture coordinates from a place in a map to the nearest rim of what may be read there.
+#[must_use]
+pub fn antumbra_room(key: WgslKey, view: &ViewUniforms, look: &Lookup) -> f32 {
+    let reach = (key.filter.reach() as f32 + 1.0) * view.bias[3];
+    let [left, top, right, bottom] = view.rect;
+    let room = (look.uv - Vec2::new(left, top)).min(Vec2::new(right, bottom) - look.uv) - reach;
+    if look.depth <= 1.0 { room.x.min(room.y) } else { -1.0 }
+}
+
+/// The loop over maps of `select_finest*.wgsl`.
+fn finest<M: CompareMap>(
+    key: WgslKey,
+    uniforms: &ShadowUniforms,
+    maps: &[M],
+    last: usize,
+    position: Vec3,
+    normal: Vec3,
+) -> f32 {
+    let (mut lit, mut rest) = (0.0, 1.0);
+    for (view, map) in uniforms.views[..=last].iter().zip(maps) {
+        let look = antumbra_look(key, view, position, normal);
+        let room = antumbra_room(key, view, &look);
+        if room < 0.0 {
+            continue;
+        }
+        let share = if key.blend { rest * (room * view.domain[3]).min(1.0) } else { rest };
+        lit += share * antumbra_filter(key.filter, map, &look);
+        rest -= share;
+        if rest <= 0.0 {
+            break;
+        }
+    }
+    lit + rest
+}
