@@ -15,11 +15,13 @@ use crate::scene::{Aabb, DepthRange, Scene};
 /// A convex body in render space that holds every receiver in view that a caster may shadow.
 #[derive(Clone, Debug)]
 pub(crate) struct FocusBody {
+    /// As a polyhedron.
+    convex: Convex,
     /// Its vertices, all finite, at least one.
     pub(crate) vertices: ArrayVec<DVec3, MAX_VERTICES>,
     /// The half-spaces that cut it out of the view frustum (or out of the receivers' bounds): it lies in all of them.
     pub(crate) walls: ArrayVec<HalfSpace, MAX_WALLS>,
-    /// The eye depths of the frustum it was cut from; all of them for a body of the scene.
+    /// The eye depths it was cut to; all of them for a body of the scene.
     pub(crate) depth: DepthRange,
     /// What the body does without.
     pub(crate) left_out: ArrayVec<LeftOut, 2>,
@@ -38,8 +40,8 @@ impl FocusBody {
         nothing_in(scene)?;
         let receivers = grown(&scene.receivers, origin, 0.0);
         let depth = DepthRange { near: f64::NEG_INFINITY, far: f64::INFINITY };
-        let mut body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
-        body.take_shadowed(Convex::hexahedron(box_corners(&receivers)), scene, travel, origin, 0.0)?;
+        let mut body = Self::new(Convex::hexahedron(box_corners(&receivers)), depth);
+        body.keep_shadowed(scene, travel, origin, 0.0)?;
         Ok(body)
     }
 
@@ -48,50 +50,70 @@ impl FocusBody {
         nothing_in(scene)?;
         // The frustum, between the depths that are visible.
         let DepthRange { near, far } = visible_depth(camera, scene)?;
-        let mut convex = Convex::hexahedron(camera.corners(near, far, origin));
+        let mut body = Self::new(Convex::hexahedron(camera.corners(near, far, origin)), DepthRange { near, far });
         // Of it, what the receivers' bounds hold.
         let reach = (camera.eye() - origin).abs().max_element();
         let walls = box_planes(&grown(&scene.receivers, origin, reach));
         for plane in walls {
-            convex.clip(plane);
+            body.convex.clip(plane);
         }
-        if convex.is_empty() {
+        if body.convex.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NoReceiversInView { near, far } });
         }
         // Of that, what something can shadow.
-        let depth = DepthRange { near, far };
-        let mut body = Self { vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() };
         let _ = body.walls.try_extend_from_slice(&walls); // never full: MAX_WALLS
-        body.take_shadowed(convex, scene, travel, origin, reach)?;
+        body.keep_shadowed(scene, travel, origin, reach)?;
         if (DepthRange { near, far }) != camera_depth(camera) {
             let _ = body.left_out.try_push(LeftOut { part: Part::Frustum, why: Why::NotVisible { near, far } });
         }
         Ok(body)
     }
 
-    /// Takes what the shadow of the casters' bounds reaches of a body.
-    fn take_shadowed(
-        &mut self,
-        mut body: Convex,
-        scene: &Scene,
-        travel: DVec3,
-        origin: DVec3,
-        reach: f64,
-    ) -> Result<(), LeftOut> {
+    fn new(convex: Convex, depth: DepthRange) -> Self {
+        Self { convex, vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() }
+    }
+
+    /// Nearest and farthest eye depth of its vertices.
+    pub(crate) fn seen_depth(&self, camera: &Camera, origin: DVec3) -> DepthRange {
+        let range = DepthRange { near: f64::INFINITY, far: f64::NEG_INFINITY };
+        let grown = |DepthRange { near, far }: DepthRange, depth: f64| DepthRange {
+            near: near.min(depth),
+            far: far.max(depth),
+        };
+        let depths = self.vertices.iter().map(|vertex| camera.eye_depth(*vertex, origin));
+        let DepthRange { near, far } = depths.fold(range, grown);
+        // Rounding may put vertices before the eye.
+        DepthRange { near: near.max(self.depth.near), far: far.min(self.depth.far) }
+    }
+
+    /// The part of a body in view between two eye depths; `None` where there is nothing.
+    pub(crate) fn slice(&self, camera: &Camera, depth: DepthRange, origin: DVec3) -> Option<Self> {
+        let mut slice = Self::new(self.convex.clone(), depth);
+        let forward = camera.forward();
+        let eye = forward.dot(camera.eye() - origin);
+        slice.convex.clip(forward.extend(-eye - depth.near));
+        slice.convex.clip((-forward).extend(eye + depth.far));
+        slice.vertices.extend(slice.convex.points());
+        let _ = slice.walls.try_extend_from_slice(&self.walls); // as many as there are
+        (!slice.vertices.is_empty()).then_some(slice)
+    }
+
+    /// Keeps what the shadow of the casters' bounds reaches.
+    fn keep_shadowed(&mut self, scene: &Scene, travel: DVec3, origin: DVec3, reach: f64) -> Result<(), LeftOut> {
         let (casters, receivers) = (&scene.casters, &scene.receivers);
         // Receivers among the casters are all in their shadow.
         let among = casters.min.cmple(receivers.min).all() && casters.max.cmpge(receivers.max).all();
         if !among {
             let mut cut = false;
             for plane in shadow_planes(&grown(casters, origin, reach), travel) {
-                cut |= body.clip(plane);
+                cut |= self.convex.clip(plane);
                 let _ = self.walls.try_push(plane); // never full: MAX_WALLS
             }
             if cut {
                 self.left_out.push(LeftOut { part: Part::Receivers(0), why: Why::LitWithoutLookup });
             }
         }
-        self.vertices.extend(body.points());
+        self.vertices.extend(self.convex.points());
         if self.vertices.is_empty() {
             return Err(LeftOut { part: Part::Light, why: Why::NothingCastsHere });
         }

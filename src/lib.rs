@@ -82,6 +82,7 @@ mod math;
 mod remix;
 mod report;
 mod scene;
+pub mod split;
 mod technique;
 pub mod techniques;
 #[cfg(feature = "naga")]
@@ -103,5 +104,6 @@ pub use light::Light;
 pub use remix::{DepthLaw, Encoding, Remix, Stabilise};
 pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
+pub use split::{DepthSplits, Scheme, Split};
 pub use technique::{FitInput, ShadowTechnique};
 pub use warp::{Focus, Warp};

@@ -4,11 +4,13 @@ use glam::DVec3;
 
 use crate::error::FitError;
 use crate::fit::bias::Bias;
+use crate::fit::layout::Layout;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
 use crate::light::Light;
-use crate::report::{LeftOut, Why};
+use crate::report::{LeftOut, Part, Why};
+use crate::split::Split;
 use crate::technique::{FitInput, ShadowTechnique};
 use crate::warp::Warp;
 
@@ -58,6 +60,8 @@ pub enum Stabilise {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remix {
+    /// How many maps there are, and what each is for. Default: one.
+    pub split: Split,
     /// Layout of a map. Default: least error, which is the focused map where no warp pays.
     pub warp: Warp,
     /// What is stored and how it is read. Default: hardware 2×2, one texture sample.
@@ -76,6 +80,7 @@ pub struct Remix {
 impl Default for Remix {
     fn default() -> Self {
         Self {
+            split: Split::default(),
             warp: Warp::default(),
             encoding: Encoding::default(),
             depth: DepthLaw::default(),
@@ -95,7 +100,8 @@ impl ShadowTechnique for Remix {
             (true, DepthLaw::Linear) => MapShape::Projective,
             (true, DepthLaw::Projective) => MapShape::ProjectiveDepth,
         };
-        WgslKey { filter, shape, ..WgslKey::default() }
+        let (select, blend) = self.split.selection();
+        WgslKey { filter, shape, maps: self.split.maps(), select, blend }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {
@@ -103,6 +109,7 @@ impl ShadowTechnique for Remix {
         let input = input.validate()?;
         self.bias.validate()?;
         self.warp.validate()?;
+        self.split.validate()?;
         let travel = directional(&input.light)?;
         let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
         // Find what has to be in the map.
@@ -118,19 +125,41 @@ impl ShadowTechnique for Remix {
             }
         };
         body.left_out.iter().for_each(|cut| frame.leave_out(cut.part, cut.why));
-        // Lay it out.
+        // Lay it out, and draw the conclusions: views and uniforms.
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
-        let fitter = Fitter { input: &input, travel, texels, bias: self.bias };
-        let layout = match (self.stabilise, self.warp) {
-            (Stabilise::Off, Warp::Uniform) => fitter.tight(&body),
-            (Stabilise::Off, Warp::Focused) => fitter.focused(&mut body, &mut frame),
-            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(&body, Why::AlreadyStill, &mut frame),
-            (Stabilise::Off, warp) => fitter.warped(&body, warp, self.guard, &mut frame),
-            (Stabilise::SnapTexels, _) => fitter.snapped(&mut body, &mut frame),
-        };
-        // Draw the conclusions: view and uniforms.
-        fitter.view(&body, &layout, &mut frame);
+        let fitter = Fitter { input: &input, travel, texels, bias: self.bias, index: 0 };
+        match self.split {
+            Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
+                // Maps that stand still are for depths that do.
+                let still = self.stabilise == Stabilise::SnapTexels && body.depth.far.is_finite();
+                let range = if still { body.depth } else { body.seen_depth(&input.camera, input.origin) };
+                let lay_out = |fitter: &Fitter, body: &mut _, frame: &mut _| self.lay_out(fitter, body, frame);
+                fitter.slices(&body, range, &splits, lay_out, &mut frame);
+            }
+            _ => {
+                let layout = self.lay_out(&fitter, &mut body, &mut frame);
+                match fitter.view(&body, &layout, &mut frame) {
+                    Ok(()) => frame.predicted = frame.views[0].texel.pixels,
+                    Err(why) => frame.leave_out(Part::Light, why),
+                }
+                // A map of the whole scene is the same for every slice.
+                (1..self.split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));
+            }
+        }
         Ok(frame)
+    }
+}
+
+impl Remix {
+    /// The window of a map around a body; the body is what it is around afterwards.
+    fn lay_out(&self, fitter: &Fitter, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
+        match (self.stabilise, self.warp) {
+            (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
+            (Stabilise::Off, Warp::Focused) => fitter.focused(body, frame),
+            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, frame),
+            (Stabilise::Off, warp) => fitter.warped(body, warp, self.guard, frame),
+            (Stabilise::SnapTexels, _) => fitter.snapped(body, frame),
+        }
     }
 }
 

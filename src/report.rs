@@ -10,6 +10,8 @@ pub enum Part {
     Light,
     /// The part of the view frustum that lies outside `scene.visible_depth`.
     Frustum,
+    /// A split, counted from the nearest one on: it has no map.
+    Split(u8),
     /// Receivers of a view that need no texel.
     Receivers(u8),
     /// Stabilisation of a view.
@@ -39,6 +41,15 @@ pub enum Why {
     },
     /// Nothing that casts stands between the light and the receivers in view.
     NothingCastsHere,
+    /// Its planes coincide, or lie outside of the eye depths that are served.
+    NoDepth,
+    /// The map of this view serves its receivers as well.
+    ServedBy {
+        /// Number of the view.
+        view: u8,
+    },
+    /// The budget has no map left (`map.views`, `map.layers`).
+    NoMapLeft,
     /// The visible depth range holds no depth of the frustum.
     OutsideVisibleDepth {
         /// Nearest visible eye depth, world units.
@@ -111,6 +122,7 @@ impl fmt::Display for Part {
         match self {
             Self::Light => write!(f, "light"),
             Self::Frustum => write!(f, "frustum"),
+            Self::Split(index) => write!(f, "split {index}"),
             Self::Receivers(index) => write!(f, "view {index}, receivers"),
             Self::Stabilise(index) => write!(f, "view {index}, stabilisation"),
             Self::Window(index) => write!(f, "view {index}, window"),
@@ -127,6 +139,9 @@ impl fmt::Display for Why {
             Self::NoCasters => write!(f, "the scene has no casters"),
             Self::NoReceiversInView { near, far } => write!(f, "no receivers in view in [{near:.4}, {far:.4}]"),
             Self::NothingCastsHere => write!(f, "nothing casts a shadow on the receivers in view"),
+            Self::NoDepth => write!(f, "no eye depths between its planes"),
+            Self::ServedBy { view } => write!(f, "the map of view {view} serves it as well"),
+            Self::NoMapLeft => write!(f, "the budget has no map left"),
             Self::OutsideVisibleDepth { near, far } => {
                 write!(f, "the visible depth [{near:.4}, {far:.4}] misses the frustum")
             }

@@ -42,11 +42,13 @@ pub(crate) struct Layout {
     pub(crate) strength: f64,
     /// Mean over what is seen of a texel's two sides, for one texel over the window, world units.
     pub(crate) error: f64,
+    /// Whether it is around the whole scene, and serves every split.
+    pub(crate) whole: bool,
 }
 
 impl Layout {
     fn uniform(window: Window) -> Self {
-        Self { strength: 0.0, error: window.size().element_sum(), window }
+        Self { strength: 0.0, error: window.size().element_sum(), window, whole: false }
     }
 }
 
@@ -76,28 +78,31 @@ impl Fitter<'_> {
         if share <= WORTH_FOCUSING {
             return tight;
         }
-        frame.leave_out(Part::Window(0), Why::SceneIsInView { share });
+        frame.leave_out(Part::Window(self.index), Why::SceneIsInView { share });
         *body = whole;
-        still
+        Layout { whole: true, ..still }
     }
 
     /// The window of the whole scene, which does not move with the camera.
     pub(crate) fn still(&self, whole: &FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
-        frame.leave_out(Part::Stabilise(0), why);
+        frame.leave_out(Part::Stabilise(self.index), why);
         let window = snap::still(&self.around(whole), self.texels.over_window(), self.input.origin);
-        Layout::uniform(window)
+        Layout { whole: true, ..Layout::uniform(window) }
     }
 
     /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller. The body is what the
     /// window is around.
     pub(crate) fn snapped(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
-        let (camera, scene) = (&self.input.camera, &self.input.scene);
-        let (_, far) = camera.projection.depth_range();
-        let far = scene.visible_depth.map_or(far, |visible| far.min(visible.far));
-        let Ok(whole) = FocusBody::of_scene(scene, self.travel, self.input.origin) else {
+        let Ok(whole) = FocusBody::of_scene(&self.input.scene, self.travel, self.input.origin) else {
             return self.still(body, Why::AlreadyStill, frame);
         };
-        match snap::snapped(camera, far, &self.around(&whole), self.texels.over_window(), self.input.origin) {
+        match snap::snapped(
+            &self.input.camera,
+            body.depth,
+            &self.around(&whole),
+            self.texels.over_window(),
+            self.input.origin,
+        ) {
             Ok(window) => Layout::uniform(window),
             Err(why) => {
                 *body = whole;
@@ -133,12 +138,12 @@ impl Fitter<'_> {
         // Limit it to what texels and positions allow, and to what pays.
         let allowed = asked.min(limit);
         if asked > limit {
-            frame.leave_out(Part::Warp(0), Why::WarpTooStrong { asked, limit });
+            frame.leave_out(Part::Warp(self.index), Why::WarpTooStrong { asked, limit });
         }
         let guarded = guard && warp.is_published();
         let strength = if guarded { predictor.guarded(allowed * sight.directed()) } else { allowed };
         if strength < allowed {
-            frame.leave_out(Part::Warp(0), Why::WarpDoesNotPay { asked: allowed, limit: strength });
+            frame.leave_out(Part::Warp(self.index), Why::WarpDoesNotPay { asked: allowed, limit: strength });
         }
         // Bend, and lay the window: on the axis as published, else where it is smallest.
         let bend = Bend::new(&around, strength / around.extent);
@@ -151,7 +156,7 @@ impl Fitter<'_> {
         let on_axis = predictor.error(strength);
         let error =
             if around == sight.frame { on_axis } else { uniform_error(&sight) * (on_axis / predictor.error(0.0)) };
-        Layout { window, strength, error }
+        Layout { window, strength, error, whole: false }
     }
 
     /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain by these margins.

@@ -4,5 +4,6 @@ pub(crate) mod bias;
 pub(crate) mod cull;
 pub(crate) mod depth_range;
 pub(crate) mod layout;
+pub(crate) mod slices;
 pub(crate) mod snap;
 pub(crate) mod view;

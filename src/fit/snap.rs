@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::camera::{Camera, Projection};
 use crate::fit::depth_range::rounding;
 use crate::report::Why;
+use crate::scene::DepthRange;
 use crate::warp::bend::Bend;
 use crate::warp::window::Window;
 
@@ -15,13 +16,19 @@ use crate::warp::window::Window;
 /// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
 const STEPS_PER_OCTAVE: f64 = 16.0;
 
-/// The window of a snapped map: square, of a size that depends on the camera's lens and not on where it looks, placed on a
+/// The window of a snapped map: square, of a size that depends on the camera's lens and the depths and not on where it looks, placed on a
 /// world-fixed grid of texels. `texels` is the number of texels over its side.
 ///
 /// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, the scene is no larger, or f64
 /// does not resolve texels so far from the world's origin.
-pub(crate) fn snapped(camera: &Camera, far: f64, scene: &Window, texels: f64, origin: DVec3) -> Result<Window, Why> {
-    let (centre_depth, radius) = bounding_sphere(&camera.projection, far);
+pub(crate) fn snapped(
+    camera: &Camera,
+    depth: DepthRange,
+    scene: &Window,
+    texels: f64,
+    origin: DVec3,
+) -> Result<Window, Why> {
+    let (centre_depth, radius) = bounding_sphere(&camera.projection, depth);
     if !radius.is_finite() {
         return Err(Why::EndlessFrustum);
     }
@@ -82,17 +89,17 @@ fn quantised_up(size: f64) -> f64 {
     if size > 0.0 { ((size.log2() * STEPS_PER_OCTAVE).ceil() / STEPS_PER_OCTAVE).exp2() } else { size }
 }
 
-/// Eye depth of the centre, on the view axis, and radius of a sphere around the view volume up to `far`.
-fn bounding_sphere(projection: &Projection, far: f64) -> (f64, f64) {
+/// Eye depth of the centre, on the view axis, and radius of a sphere around the view volume between two eye depths.
+fn bounding_sphere(projection: &Projection, DepthRange { near, far }: DepthRange) -> (f64, f64) {
     match *projection {
-        Projection::Perspective { left, right, down, up, near, .. } => {
+        Projection::Perspective { left, right, down, up, .. } => {
             // Tangent of the widest corner. The sphere through the near and the far corners, or the far corners' circle.
             let spread = left.abs().max(right.abs()).powi(2) + down.abs().max(up.abs()).powi(2);
             let centre = (0.5 * (near + far) * (1.0 + spread)).min(far);
             let corner = |depth: f64| (spread * depth * depth + (depth - centre) * (depth - centre)).sqrt();
             (centre, corner(far).max(corner(near)))
         }
-        Projection::Orthographic { left, right, down, up, near, .. } => {
+        Projection::Orthographic { left, right, down, up, .. } => {
             let spread = left.abs().max(right.abs()).powi(2) + down.abs().max(up.abs()).powi(2);
             let half = 0.5 * (far - near);
             (near + half, (spread + half * half).sqrt())

@@ -15,6 +15,7 @@ use crate::technique::FitInput;
 use crate::warp::window::Window;
 
 /// What a body is fitted with.
+#[derive(Clone, Copy)]
 pub(crate) struct Fitter<'a> {
     /// The checked input.
     pub(crate) input: &'a FitInput<'a>,
@@ -24,6 +25,8 @@ pub(crate) struct Fitter<'a> {
     pub(crate) texels: Texels,
     /// How receivers are kept from shadowing themselves.
     pub(crate) bias: Bias,
+    /// Number of the view.
+    pub(crate) index: u8,
 }
 
 /// Texels over the side of a window, and the border around them.
@@ -60,9 +63,9 @@ impl Texels {
 }
 
 impl Fitter<'_> {
-    /// From a window to a view and its uniforms, appended to the frame.
-    pub(crate) fn view(&self, body: &FocusBody, layout: &Layout, frame: &mut ShadowFrame) {
-        let &Layout { ref window, strength, error } = layout;
+    /// From a window to a view and its uniforms, appended to the frame; `Err` where nothing casts into the window.
+    pub(crate) fn view(&self, body: &FocusBody, layout: &Layout, frame: &mut ShadowFrame) -> Result<(), Why> {
+        let &Layout { ref window, strength, error, .. } = layout;
         let (input, texels) = (self.input, &self.texels);
         let margin = rounding_margin(&body.vertices, self.input.origin);
         // Texels, and a border of them around the window for the filter and the bias; all but a ring of it is drawn.
@@ -73,7 +76,7 @@ impl Fitter<'_> {
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
         let cull = cull::prism(&drawn, last + margin, input.origin);
         let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
-            return frame.leave_out(Part::Light, Why::NothingCastsHere);
+            return Err(Why::NothingCastsHere);
         };
         let depth = depth.widened(margin);
         // One matrix, in f64, narrowed once; and what the receiver shader reads.
@@ -88,28 +91,28 @@ impl Fitter<'_> {
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
         // Say what was cut.
         if window.size().min_element() < 3.0 * margin {
-            frame.leave_out(Part::Window(0), Why::Degenerate { widened_to: window.size().min_element() });
+            frame.leave_out(Part::Window(self.index), Why::Degenerate { widened_to: window.size().min_element() });
         }
         if texels.border < texels.wanted {
-            frame.leave_out(Part::Border(0), Why::MapTooSmall { border: texels.border, wanted: texels.wanted });
+            frame
+                .leave_out(Part::Border(self.index), Why::MapTooSmall { border: texels.border, wanted: texels.wanted });
         }
         let ring = texels.ring;
-        let index = frame.views.len();
         let view = ShadowView {
             clip_from_render: clip_from_render.narrow(),
             depth_from_render: clip_from_render.narrow_row(2),
             viewport: UVec4::new(ring, ring, input.map.side - 2 * ring, input.map.side - 2 * ring),
-            layer: 0,
+            layer: self.index.into(),
             cull,
             texel: TexelSize { world: extremes.world, pixels: extremes.pixels },
             warp_strength: strength as f32,
             domain: extremes.domain,
         };
         if frame.views.try_push(view).is_ok() {
-            frame.uniforms.views[index] = uniforms;
+            frame.uniforms.views[usize::from(self.index)] = uniforms;
             frame.uniforms.counts[0] += 1;
-            frame.predicted = extremes.pixels;
         }
+        Ok(())
     }
 
     fn bias_input<'b>(

@@ -74,7 +74,9 @@ impl Seen {
         let [low, high] = if samples.is_empty() { [DVec2::ZERO; 2] } else { sight.bounds() };
         for sample in samples {
             let at = across(*sample - origin);
-            if at.cmpge(low).all() && at.cmple(high).all() {
+            let depth = camera.eye_depth(*sample, DVec3::ZERO);
+            let deep = body.depth.near <= depth && depth <= body.depth.far;
+            if deep && at.cmpge(low).all() && at.cmple(high).all() {
                 count += 1.0;
                 sum += at;
                 products += mean_products(at, at);

@@ -1,0 +1,105 @@
+//! Several maps: one slice of what is in view after the other, each fitted as a single map would be.
+
+use crate::fit::layout::Layout;
+use crate::fit::view::Fitter;
+use crate::focus::FocusBody;
+use crate::frame::{Footprint, Select, ShadowFrame};
+use crate::report::{Part, Why};
+use crate::scene::DepthRange;
+use crate::split::depth::{DepthSplits, planes};
+
+/// One over the width of a rim in which the last map gives way to nothing: none.
+const NO_RIM: f32 = 1e30;
+
+impl Fitter<'_> {
+    /// Cuts a body in view into slices, lays each out with `lay_out`, and appends their views; `range` are the eye depths to cut.
+    ///
+    /// Slices without receivers, without casters, or without depth get no map, and slices behind a map of the whole scene
+    /// need none: the report says so.
+    pub(crate) fn slices(
+        &self,
+        body: &FocusBody,
+        range: DepthRange,
+        splits: &DepthSplits,
+        lay_out: impl Fn(&Self, &mut FocusBody, &mut ShadowFrame) -> Layout,
+        frame: &mut ShadowFrame,
+    ) {
+        // As many slices as there are maps.
+        let budget = u32::from(splits.maps).min(self.input.map.views).min(self.input.map.layers) as u8;
+        (budget..splits.maps).for_each(|split| frame.leave_out(Part::Split(split), Why::NoMapLeft));
+        let Some(planes) = planes(&splits.scheme, budget, range.near, range.far) else { return };
+        let blend = f64::from(splits.blend);
+        let mut before = range.near;
+        for split in 0..budget {
+            let (near, far) = (planes[usize::from(split)], planes[usize::from(split) + 1]);
+            let last = split + 1 == budget;
+            if near >= far && !last {
+                frame.leave_out(Part::Split(split), Why::NoDepth);
+                continue;
+            }
+            // The slice, and the band in which the one before gives way to it.
+            let from = near - blend * (near - before);
+            before = near;
+            let Some(mut slice) = body.slice(&self.input.camera, DepthRange { near: from, far }, self.input.origin)
+            else {
+                frame.leave_out(Part::Split(split), Why::NoReceiversInView { near, far });
+                continue;
+            };
+            let index = frame.views.len() as u8;
+            let fitter = Self { index, ..*self };
+            let layout = lay_out(&fitter, &mut slice, frame);
+            if let Err(why) = fitter.view(&slice, &layout, frame) {
+                frame.leave_out(Part::Split(split), why);
+                continue;
+            }
+            let band = blend * (far - near);
+            let domain = match splits.select {
+                Select::Depth => [near, far, far - band, if band > 0.0 { band.recip() } else { 0.0 }],
+                Select::Finest => [near, far, 0.0, if blend > 0.0 { 2.0 / blend } else { 0.0 }],
+            };
+            frame.uniforms.views[usize::from(index)].domain = domain.map(|depth| depth as f32);
+            if layout.whole {
+                (split + 1..budget)
+                    .for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: index }));
+                break;
+            }
+        }
+        self.finish(splits, range, frame);
+    }
+
+    /// The last view serves everything behind it, or gives way to light; what is predicted for all of them.
+    fn finish(&self, splits: &DepthSplits, range: DepthRange, frame: &mut ShadowFrame) {
+        let Some(last) = frame.views.len().checked_sub(1) else { return };
+        let domain = &mut frame.uniforms.views[last].domain;
+        match splits.select {
+            Select::Depth if splits.fade => {}
+            Select::Depth => *domain = [domain[0], f32::MAX, 0.0, 0.0],
+            Select::Finest => domain[3] = NO_RIM,
+        }
+        // Footprints over all views; the error by the share of what is seen in each.
+        let mut predicted = Footprint { min: f32::INFINITY, ..Footprint::NONE };
+        let (mut error, mut seen) = (0.0, 0.0);
+        for (view, uniforms) in frame.views.iter().zip(&frame.uniforms.views) {
+            let [near, far] = [uniforms.domain[0], uniforms.domain[1]].map(|depth| f64::from(depth).min(range.far));
+            let share = self.share_seen(DepthRange { near, far });
+            let pixels = view.texel.pixels;
+            predicted.min = predicted.min.min(pixels.min);
+            predicted.max = predicted.max.max(pixels.max);
+            error += share * f64::from(pixels.error);
+            seen += share;
+        }
+        predicted.error = if seen > 0.0 { (error / seen) as f32 } else { 0.0 };
+        frame.predicted = predicted;
+    }
+
+    /// How much is seen between two eye depths: samples, or where none are given, depths.
+    fn share_seen(&self, DepthRange { near, far }: DepthRange) -> f64 {
+        let points = self.input.scene.visible_points;
+        if points.is_empty() {
+            return far - near;
+        }
+        let camera = &self.input.camera;
+        let depths = points.iter().map(|point| camera.eye_depth(*point, glam::DVec3::ZERO));
+        depths.filter(|depth| (near..far).contains(depth)).count() as f64
+    }
+}
