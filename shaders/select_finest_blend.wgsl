@@ -7,7 +7,7 @@ fn antumbra_room(view: AntumbraView, look: AntumbraLookup) -> f32 {
 }
 
 // The first map that holds the receiver and what its filter reads: maps are listed from the finest on. Towards its rim a
-// map gives way to the next one that holds it.
+// map gives way to the next ones that hold it, if any do.
 fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
     var lit = 0.0;
     var rest = 1.0;
@@ -24,5 +24,5 @@ fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
             }
         }
     }
-    return lit + rest;
+    return select(1.0, lit / (1.0 - rest), rest < 1.0);
 }

@@ -73,6 +73,11 @@ impl FocusBody {
         Self { convex, vertices: ArrayVec::new(), walls: ArrayVec::new(), depth, left_out: ArrayVec::new() }
     }
 
+    /// Its edges, by their ends.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.convex.edges()
+    }
+
     /// Nearest and farthest eye depth of its vertices.
     pub(crate) fn seen_depth(&self, camera: &Camera, origin: DVec3) -> DepthRange {
         let range = DepthRange { near: f64::INFINITY, far: f64::NEG_INFINITY };

@@ -84,5 +84,5 @@ fn finest<M: CompareMap>(
             break;
         }
     }
-    lit + rest
+    if rest < 1.0 { lit / (1.0 - rest) } else { 1.0 }
 }

@@ -1,5 +1,6 @@
 //! Several maps: one slice of what is in view after the other, each fitted as a single map would be.
 
+use crate::fit::depth_range::rounding_margin;
 use crate::fit::layout::Layout;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
@@ -7,6 +8,7 @@ use crate::frame::{Footprint, Select, ShadowFrame};
 use crate::report::{Part, Why};
 use crate::scene::DepthRange;
 use crate::split::depth::{DepthSplits, planes};
+use crate::split::equal_error;
 
 /// One over the width of a rim in which the last map gives way to nothing: none.
 const NO_RIM: f32 = 1e30;
@@ -27,8 +29,14 @@ impl Fitter<'_> {
         // As many slices as there are maps.
         let budget = u32::from(splits.maps).min(self.input.map.views).min(self.input.map.layers) as u8;
         (budget..splits.maps).for_each(|split| frame.leave_out(Part::Split(split), Why::NoMapLeft));
-        let Some(planes) = planes(&splits.scheme, budget, range.near, range.far) else { return };
+        let (camera, origin) = (&self.input.camera, self.input.origin);
+        let planes = planes(&splits.scheme, budget, range.near, range.far).unwrap_or_else(|| {
+            let samples = self.input.scene.visible_points;
+            equal_error::planes(body, camera, self.travel, samples, origin, budget, range)
+        });
         let blend = f64::from(splits.blend);
+        // Receivers know their depths as well as f32 does.
+        let margin = rounding_margin(&body.vertices, self.input.origin);
         let mut before = range.near;
         for split in 0..budget {
             let (near, far) = (planes[usize::from(split)], planes[usize::from(split) + 1]);
@@ -40,8 +48,8 @@ impl Fitter<'_> {
             // The slice, and the band in which the one before gives way to it.
             let from = near - blend * (near - before);
             before = near;
-            let Some(mut slice) = body.slice(&self.input.camera, DepthRange { near: from, far }, self.input.origin)
-            else {
+            let depth = DepthRange { near: from - margin, far: far + margin };
+            let Some(mut slice) = body.slice(camera, depth, origin) else {
                 frame.leave_out(Part::Split(split), Why::NoReceiversInView { near, far });
                 continue;
             };
@@ -69,8 +77,16 @@ impl Fitter<'_> {
 
     /// The last view serves everything behind it, or gives way to light; what is predicted for all of them.
     fn finish(&self, splits: &DepthSplits, range: DepthRange, frame: &mut ShadowFrame) {
-        let Some(last) = frame.views.len().checked_sub(1) else { return };
-        let domain = &mut frame.uniforms.views[last].domain;
+        let used = frame.views.len();
+        let Some(last) = used.checked_sub(1) else { return };
+        // A view whose neighbour was left out gives way to nothing: there is no receiver behind it that anything shadows.
+        let views = &mut frame.uniforms.views[..used];
+        for index in 0..last {
+            if views[index + 1].domain[0] > views[index].domain[1] && splits.select == Select::Depth {
+                views[index].domain[3] = 0.0;
+            }
+        }
+        let domain = &mut views[last].domain;
         match splits.select {
             Select::Depth if splits.fade => {}
             Select::Depth => *domain = [domain[0], f32::MAX, 0.0, 0.0],

@@ -69,6 +69,12 @@ impl Convex {
         self.vertices.iter().filter(|vertex| vertex.w > 0.0).map(|vertex| vertex.truncate() / vertex.w)
     }
 
+    /// Edges between vertices that are points, by their ends.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+        let ends = self.edges.iter().map(|edge| edge.vertices.map(|index| self.vertices[usize::from(index)]));
+        ends.filter(|ends| ends.iter().all(|end| end.w > 0.0)).map(|ends| ends.map(|end| end.truncate() / end.w))
+    }
+
     /// True when nothing is left.
     pub(crate) fn is_empty(&self) -> bool {
         self.vertices.is_empty()

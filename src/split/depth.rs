@@ -73,11 +73,15 @@ pub enum Scheme {
 
 impl Default for DepthSplits {
     fn default() -> Self {
-        Self { maps: 4, scheme: Scheme::EqualError, select: Select::Finest, blend: 0.0, fade: false }
+        Self::DEFAULT
     }
 }
 
 impl DepthSplits {
+    /// Four maps of equal error, the finest that holds a receiver, hard edges.
+    pub const DEFAULT: Self =
+        Self { maps: 4, scheme: Scheme::EqualError, select: Select::Finest, blend: 0.0, fade: false };
+
     /// As many maps as there are depths, and one more: `planes` are the eye depths between them, world units, ascending. At most seven are
     /// read.
     #[must_use]
@@ -214,7 +218,8 @@ mod tests {
                 2 => Scheme::Practical { lambda, offset },
                 _ => Scheme::Manual(depths),
             };
-            prop_assert!(DepthSplits { maps, scheme, ..DepthSplits::default() }.validate().is_ok());
+            let splits = DepthSplits { maps, scheme, ..DepthSplits::default() };
+            prop_assert!(splits.validate().is_ok());
             let far = near + length;
             let planes = found(scheme, maps, near, far);
             prop_assert_eq!(planes.len(), usize::from(maps) + 1);

@@ -1,6 +1,7 @@
 //! Where a view is cut into several maps.
 
 pub mod depth;
+pub(crate) mod equal_error;
 
 pub use depth::{DepthSplits, Scheme};
 

@@ -72,7 +72,7 @@ impl Inputs {
                 visible_depth: self.visible,
                 visible_points: &self.points,
             },
-            map: MapBudget::one(self.side),
+            map: MapBudget { side: self.side, layers: 8, views: 8 },
             origin: self.origin,
             previous: None,
         }

@@ -1,0 +1,174 @@
+//! Split depths of the least predicted picture error.
+//!
+//! A map of a fixed number of texels has texels as large as what it covers, and a shadow edge is displaced by about half of one (see
+//! `warp::least_error`). What a picture gets wrong is then the sum over slices of their extent across the light times what is seen
+//! in them:
+//!
+//! ```text
+//! (1)  E(C) = Σ_i s(C_i, C_i+1) T(C_i, C_i+1)
+//! (2)  T: width + height of the slice of the body as the light sees it, one side along the view
+//! (3)  s: share of the samples of what is seen; without any, of the logarithm of depth
+//! ```
+//!
+//! Moving one plane changes two summands, and each plane in turn is moved to where their sum is least, a few times over. The planes follow
+//! the camera continuously as long as the valley they are in does.
+//!
+//! # References
+//! - Lauritzen, Salvi & Lefohn, *Sample distribution shadow maps*, 2011: splits from what is seen.
+//! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: error of splits in one dimension.
+
+use arrayvec::ArrayVec;
+use glam::{DVec3, Vec3Swizzles};
+
+use super::depth::{MAX_PLANES, Scheme, planes as planes_of};
+use crate::camera::Camera;
+use crate::focus::FocusBody;
+use crate::light_space::LightSpace;
+use crate::math::convex::MAX_EDGES;
+use crate::scene::DepthRange;
+
+/// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
+const START: f32 = 0.75;
+
+/// How often every plane is moved. Once leaves planes that moved before their neighbours did; more than four move nothing.
+const SWEEPS: u32 = 3;
+
+/// Steps of each search: each leaves 62 % of the interval, eight leave 2 % of it.
+const STEPS: u32 = 8;
+
+/// The golden ratio less one.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Classes of depth in which samples are counted. Fewer blur where things are; more are emptier than samples are many.
+const CLASSES: usize = 48;
+
+/// Samples that weigh as much as knowing nothing does, as in the warp's predictor.
+const ENOUGH_SAMPLES: f64 = 8.0;
+
+/// What a slice costs, as a function of its planes.
+struct Cost {
+    /// Edges of the body: eye depth, place along the view and across it, of both ends.
+    edges: ArrayVec<[DVec3; 2], MAX_EDGES>,
+    range: DepthRange,
+    /// Share of what is seen before the end of each class.
+    seen: [f64; CLASSES + 1],
+}
+
+/// The planes of `maps` slices, ascending, ends included.
+///
+/// Kind of promise: typical; a local optimum. O(maps · edges) evaluations of a few flops, O(samples).
+pub(crate) fn planes(
+    body: &FocusBody,
+    camera: &Camera,
+    travel: DVec3,
+    samples: &[DVec3],
+    origin: DVec3,
+    maps: u8,
+    range: DepthRange,
+) -> ArrayVec<f64, MAX_PLANES> {
+    let start = Scheme::Practical { lambda: START, offset: 0.0 };
+    let mut planes = planes_of(&start, maps, range.near, range.far).unwrap_or_default();
+    let cost = Cost::of(body, camera, travel, samples, origin, range);
+    for _ in 0..SWEEPS {
+        for index in 1..planes.len().saturating_sub(1) {
+            let (before, after) = (planes[index - 1], planes[index + 1]);
+            planes[index] = least(before, after, |plane| cost.of_slice(before, plane) + cost.of_slice(plane, after));
+        }
+    }
+    planes
+}
+
+/// The place of the least cost between two depths, by golden section; even steps are even steps of logarithmic depth where there is one.
+fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    let ratio = if low > 0.0 { (high / low).ln() } else { 0.0 };
+    let at = |share: f64| if ratio > 0.0 { low * (ratio * share).exp() } else { low + (high - low) * share };
+    let (mut left, mut right) = (0.0, 1.0);
+    let (mut one, mut other) = (1.0 - GOLDEN, GOLDEN);
+    let (mut cost_one, mut cost_other) = (cost(at(one)), cost(at(other)));
+    for _ in 0..STEPS {
+        if cost_one <= cost_other {
+            (right, other, cost_other) = (other, one, cost_one);
+            one = right - GOLDEN * (right - left);
+            cost_one = cost(at(one));
+        } else {
+            (left, one, cost_one) = (one, other, cost_other);
+            other = left + GOLDEN * (right - left);
+            cost_other = cost(at(other));
+        }
+    }
+    at(0.5 * (left + right)).clamp(low, high)
+}
+
+impl Cost {
+    fn of(
+        body: &FocusBody,
+        camera: &Camera,
+        travel: DVec3,
+        samples: &[DVec3],
+        origin: DVec3,
+        range: DepthRange,
+    ) -> Self {
+        // One side of every window along the view.
+        let light = LightSpace::fixed(travel);
+        let view = light.ray(camera.forward()).truncate();
+        let light = light.turned(view.try_normalize().unwrap_or(glam::DVec2::X));
+        let place = |vertex: DVec3| light.ray(vertex).truncate().extend(camera.eye_depth(vertex, origin)).zxy();
+        let edges = body.edges().map(|ends| ends.map(place)).collect();
+        let mut cost = Self { edges, range, seen: [0.0; CLASSES + 1] };
+        // Count what is seen; what is not known is spread evenly.
+        let mut count = 0.0;
+        for sample in samples {
+            let depth = camera.eye_depth(*sample, DVec3::ZERO);
+            if range.near <= depth && depth <= range.far {
+                cost.seen[(cost.class(depth) as usize).min(CLASSES - 1) + 1] += 1.0;
+                count += 1.0;
+            }
+        }
+        let trust = count / (count + ENOUGH_SAMPLES);
+        let mut before = 0.0;
+        for seen in cost.seen.iter_mut().skip(1) {
+            let share = if count > 0.0 { *seen / count } else { 0.0 };
+            before += trust * share + (1.0 - trust) / CLASSES as f64;
+            *seen = before;
+        }
+        cost
+    }
+
+    /// Depth in classes, 0 to [`CLASSES`].
+    fn class(&self, depth: f64) -> f64 {
+        let DepthRange { near, far } = self.range;
+        let share = if near > 0.0 { (depth / near).ln() / (far / near).ln() } else { (depth - near) / (far - near) };
+        // 0/0 where there is no range.
+        if share.is_finite() { share.clamp(0.0, 1.0) * CLASSES as f64 } else { 0.0 }
+    }
+
+    /// Share of what is seen that lies before a depth.
+    fn before(&self, depth: f64) -> f64 {
+        let class = self.class(depth);
+        let whole = (class as usize).min(CLASSES - 1);
+        self.seen[whole] + (self.seen[whole + 1] - self.seen[whole]) * (class - whole as f64)
+    }
+
+    /// One summand of (1).
+    fn of_slice(&self, near: f64, far: f64) -> f64 {
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for [from, to] in &self.edges {
+            // The part of the edge between the planes.
+            let (first, last) = if from.x <= to.x { (from, to) } else { (to, from) };
+            if first.x > far || last.x < near {
+                continue;
+            }
+            let length = last.x - first.x;
+            let at = |depth: f64| {
+                if length > 0.0 { *first + (*last - *first) * ((depth - first.x) / length) } else { *first }
+            };
+            for end in [at(near.max(first.x)), at(far.min(last.x))] {
+                low = low.min(end);
+                high = high.max(end);
+            }
+        }
+        let size = (high - low).max(DVec3::ZERO);
+        (self.before(far) - self.before(near)) * (size.y + size.z)
+    }
+}

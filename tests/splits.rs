@@ -1,0 +1,141 @@
+//! What every split fit promises, over hostile inputs: slices cover the range, each receiver that something can shadow finds a
+//! map with all that its filter reads, and what can shadow it is drawn there.
+
+mod common;
+
+use antumbra::encoding::depth::antumbra_look;
+use antumbra::encoding::split::{antumbra_index, antumbra_room};
+use antumbra::{
+    Aabb, DepthSplits, Part, Remix, Scheme, Select, ShadowFrame, ShadowTechnique, Split, Stabilise, Warp, WgslKey,
+};
+use common::tally::Tally;
+use common::{Inputs, caster, in_view, inputs, receiver, shares, sound};
+use glam::{DVec3, Vec3};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
+
+fn scheme() -> impl Strategy<Value = Scheme> {
+    let manual = prop::array::uniform7((-3.0..6.0_f32).prop_map(|log| 10.0_f32.powf(log))).prop_map(|mut depths| {
+        depths.sort_by(f32::total_cmp);
+        Scheme::Manual(depths)
+    });
+    prop_oneof![
+        Just(Scheme::Uniform),
+        Just(Scheme::Logarithmic),
+        (0.0..=1.0_f32, prop_oneof![Just(0.0), -100.0..100.0_f32])
+            .prop_map(|(lambda, offset)| Scheme::Practical { lambda, offset }),
+        Just(Scheme::EqualError),
+        manual,
+    ]
+}
+
+fn remixes() -> impl Strategy<Value = Remix> {
+    let warp = prop::sample::select(vec![
+        Warp::Uniform,
+        Warp::Focused,
+        Warp::Trapezoidal { focus: antumbra::Focus::default() },
+        Warp::LightSpacePerspective,
+        Warp::Perspective { pull_back: 0.0 },
+        Warp::LeastError,
+    ]);
+    let blend = prop_oneof![2 => Just(0.0), 1 => Just(0.5), 1 => 0.0..0.5_f32];
+    let splits =
+        (1..=8_u8, scheme(), any::<bool>(), blend, any::<bool>()).prop_map(|(maps, scheme, finest, blend, fade)| {
+            let select = if finest { Select::Finest } else { Select::Depth };
+            DepthSplits { maps, scheme, select, blend, fade }
+        });
+    (warp, splits, any::<bool>()).prop_map(|(warp, splits, snap)| Remix {
+        split: Split::Depth(splits),
+        warp,
+        stabilise: if snap { Stabilise::SnapTexels } else { Stabilise::Off },
+        ..Remix::default()
+    })
+}
+
+/// The views that a receiver is looked up in: by depth, one or two that are blended; by containment, the first that holds it.
+fn serving(key: WgslKey, frame: &ShadowFrame, at: Vec3, depth: f32) -> Vec<usize> {
+    let used = frame.views.len();
+    if key.maps == 1 {
+        return vec![0];
+    }
+    let room = |index: usize| {
+        let view = &frame.uniforms.views[index];
+        antumbra_room(key, view, &antumbra_look(key, view, at, Vec3::ZERO))
+    };
+    if key.select == Select::Finest {
+        return (0..used).find(|index| room(*index) >= 0.0).into_iter().collect();
+    }
+    let index = antumbra_index(&frame.uniforms, usize::from(key.maps) - 1, depth);
+    let [.., from, per_depth] = frame.uniforms.views[index].domain;
+    let share = ((depth - from) * per_depth).clamp(0.0, 1.0);
+    let both = if key.blend && share > 0.0 { vec![index, index + 1] } else { vec![index] };
+    both.into_iter().filter(|index| *index < used).collect()
+}
+
+/// A receiver's maps hold it, and draw its caster.
+fn serves(
+    frame: &ShadowFrame,
+    remix: &Remix,
+    inputs: &Inputs,
+    receiver: DVec3,
+    caster: DVec3,
+) -> Result<(), TestCaseError> {
+    let key = remix.wgsl_key();
+    let at = (receiver - inputs.origin).as_vec3();
+    let depth = -inputs.camera.world_from_view.inverse().transform_point3(receiver).z as f32;
+    let maps = serving(key, frame, at, depth);
+    prop_assert!(!maps.is_empty(), "no map at depth {depth} of {:?}", frame.left_out);
+    for index in maps {
+        let view = &frame.views[index];
+        let clip = view.clip_from_render * at.extend(1.0);
+        let short = frame.left_out.iter().any(|cut| cut.part == Part::Border(index as u8));
+        // All that the filter reads is drawn.
+        let reach = if short { 0.0 } else { key.filter.reach() as f32 };
+        let most = 1.0 - 2.0 * reach / view.viewport.z as f32;
+        let out = clip.truncate().truncate().abs().max_element() / clip.w;
+        prop_assert!(clip.w > 0.0 && out <= most, "view {index}: {out} of {most}");
+        let lies = view.depth_from_render.dot(at.extend(1.0));
+        prop_assert!((0.0..=1.0).contains(&lies), "view {index}: depth {lies}");
+        prop_assert!(view.cull.may_cast(&Aabb::new(caster, caster)), "view {index} culls {caster}");
+        let first = view.depth_from_render.dot((caster - inputs.origin).as_vec3().extend(1.0));
+        prop_assert!(first >= 0.0, "view {index} clips {caster}");
+    }
+    Ok(())
+}
+
+/// Cases, those with a shadowed receiver in view, and those of them with several views.
+static CASES: Tally<3> = Tally::new();
+
+#[test]
+fn nothing_is_lost_between_splits() {
+    nothing_is_lost_over_hostile_inputs();
+    let [cases, reached, several] = CASES.read();
+    println!("{cases} cases, {reached} with a shadowed receiver in view, {several} of them with several views");
+    assert!(cases >= 100_000 && reached >= cases / 8 && several >= cases / 40);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100_000, max_shrink_iters: 2_000, ..ProptestConfig::default() })]
+
+    fn nothing_is_lost_over_hostile_inputs(inputs in inputs(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
+        CASES.count(0);
+        let frame = sound(remix, &inputs)?;
+        // Slices ascend, and leave no gap that is not accounted for.
+        let domains = frame.uniforms.views[..frame.views.len()].iter().map(|view| view.domain);
+        let planes: Vec<f32> = domains.flat_map(|domain| [domain[0], domain[1]]).collect();
+        prop_assert!(frame.views.len() < 2 || planes.is_sorted(), "{planes:?}");
+        if inputs.receivers.is_empty() || inputs.casters.is_empty() {
+            return Ok(());
+        }
+        let receiver = receiver(&inputs, shares, along < 0.25);
+        let Some(caster) = caster(&inputs, receiver, along) else { return Ok(()) };
+        if !in_view(&inputs, receiver) {
+            return Ok(());
+        }
+        CASES.count(1);
+        if frame.views.len() > 1 {
+            CASES.count(2);
+        }
+        serves(&frame, &remix, &inputs, receiver, caster)?;
+    }
+}
