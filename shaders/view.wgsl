@@ -18,8 +18,8 @@ struct AntumbraView {
     across_u: vec4f,
     across_v: vec4f,
     across_w: vec4f,
-    // Several maps: nearest and farthest eye depth that the view serves; where it begins to give way to the next one, and
-    // one over the length of that band. By containment: nothing, nothing, texture coordinates within the rim of `rect`
-    // where it begins to give way, and one over the width of that band.
+    // Several maps: nearest and farthest eye depth that the view serves. By depth: where it begins to give way to the next
+    // one, and one over the length of that band. By containment, in texture coordinates: what a filter reads beyond a
+    // receiver, and one over the width of the band along the rim in which it gives way.
     domain: vec4f,
 }

@@ -290,9 +290,10 @@ pub struct ViewUniforms {
     pub across_v: [f32; 4],
     /// Warped maps: W of `across_u`.
     pub across_w: [f32; 4],
-    /// Several maps, found by depth: nearest and farthest eye depth that the view serves (the last one everything behind it);
-    /// the depth at which it begins to give way to the next one, and one over the length of that band (0: no band).
-    /// Found by containment: the last member is one over the width of the band along its rim, texture coordinates.
+    /// Several maps: nearest and farthest eye depth that the view serves (found by depth, the last one serves everything behind
+    /// it). Found by depth: the depth at which it begins to give way to the next one, and one over the length of that band (0: no
+    /// band). Found by containment: what a filter reads beyond a receiver, and one over the width of the band along the rim
+    /// in which it gives way, texture coordinates.
     pub domain: [f32; 4],
 }
 

@@ -136,14 +136,14 @@ impl ShadowTechnique for Remix {
                 let lay_out = |fitter: &Fitter, body: &mut _, frame: &mut _| self.lay_out(fitter, body, frame);
                 fitter.slices(&body, range, &splits, lay_out, &mut frame);
             }
-            _ => {
+            split => {
                 let layout = self.lay_out(&fitter, &mut body, &mut frame);
-                match fitter.view(&body, &layout, &mut frame) {
-                    Ok(()) => frame.predicted = frame.views[0].texel.pixels,
-                    Err(why) => frame.leave_out(Part::Light, why),
+                if let Err(why) = fitter.view(&body, &layout, &mut frame) {
+                    frame.leave_out(Part::Light, why);
                 }
                 // A map of the whole scene is the same for every slice.
-                (1..self.split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));
+                (1..split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));
+                fitter.finish_one(split.selection().0, &mut frame);
             }
         }
         Ok(frame)

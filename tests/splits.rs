@@ -60,7 +60,7 @@ fn serving(key: WgslKey, frame: &ShadowFrame, at: Vec3, depth: f32) -> Vec<usize
     }
     let room = |index: usize| {
         let view = &frame.uniforms.views[index];
-        antumbra_room(key, view, &antumbra_look(key, view, at, Vec3::ZERO))
+        antumbra_room(view, &antumbra_look(key, view, at, Vec3::ZERO))
     };
     if key.select == Select::Finest {
         return (0..used).find(|index| room(*index) >= 0.0).into_iter().collect();
@@ -84,7 +84,14 @@ fn serves(
     let at = (receiver - inputs.origin).as_vec3();
     let depth = -inputs.camera.world_from_view.inverse().transform_point3(receiver).z as f32;
     let maps = serving(key, frame, at, depth);
-    prop_assert!(!maps.is_empty(), "no map at depth {depth} of {:?}", frame.left_out);
+    let rooms: Vec<_> = (0..frame.views.len())
+        .map(|i| {
+            let v = &frame.uniforms.views[i];
+            let l = antumbra_look(key, v, at, Vec3::ZERO);
+            (v.domain, l, antumbra_room(v, &l))
+        })
+        .collect();
+    prop_assert!(!maps.is_empty(), "no map at depth {depth} of {:?} {rooms:?}", frame.left_out);
     for index in maps {
         let view = &frame.views[index];
         let clip = view.clip_from_render * at.extend(1.0);
@@ -93,10 +100,20 @@ fn serves(
         let reach = if short { 0.0 } else { key.filter.reach() as f32 };
         let most = 1.0 - 2.0 * reach / view.viewport.z as f32;
         let out = clip.truncate().truncate().abs().max_element() / clip.w;
-        prop_assert!(clip.w > 0.0 && out <= most, "view {index}: {out} of {most}");
-        let lies = view.depth_from_render.dot(at.extend(1.0));
-        prop_assert!((0.0..=1.0).contains(&lies), "view {index}: depth {lies}");
-        prop_assert!(view.cull.may_cast(&Aabb::new(caster, caster)), "view {index} culls {caster}");
+        prop_assert!(
+            clip.w > 0.0 && out <= most,
+            "view {index}: {out} of {most} at depth {depth} {:?} {rooms:?}",
+            frame.left_out
+        );
+        // As it is compared: less what rounding may have added.
+        let compared = antumbra_look(key, &frame.uniforms.views[index], at, Vec3::ZERO).depth;
+        prop_assert!(compared <= 1.0, "view {index}: depth {compared}");
+        prop_assert!(
+            view.cull.may_cast(&Aabb::new(caster, caster)),
+            "view {index} culls {caster} of {receiver} at {depth} {rooms:?} {:?} {:?}",
+            view.cull.planes().iter().map(|p| p.dot((caster - inputs.origin).extend(1.0))).collect::<Vec<_>>(),
+            frame.left_out
+        );
         let first = view.depth_from_render.dot((caster - inputs.origin).as_vec3().extend(1.0));
         prop_assert!(first >= 0.0, "view {index} clips {caster}");
     }

@@ -52,13 +52,13 @@ pub fn antumbra_index(uniforms: &ShadowUniforms, last: usize, view_depth: f32) -
     uniforms.views[..last].iter().filter(|view| view_depth > view.domain[1]).count()
 }
 
-/// Twin of `antumbra_room`: texture coordinates from a place in a map to the nearest rim of what may be read there.
+/// Twin of `antumbra_room`: texture coordinates from a place in a map to the nearest rim of what may be looked up
+/// there.
 #[must_use]
-pub fn antumbra_room(key: WgslKey, view: &ViewUniforms, look: &Lookup) -> f32 {
-    let reach = (key.filter.reach() as f32 + 1.0) * view.bias[3];
+pub fn antumbra_room(view: &ViewUniforms, look: &Lookup) -> f32 {
     let [left, top, right, bottom] = view.rect;
-    let room = (look.uv - Vec2::new(left, top)).min(Vec2::new(right, bottom) - look.uv) - reach;
-    if look.depth <= 1.0 { room.x.min(room.y) } else { -1.0 }
+    let room = (look.uv - Vec2::new(left, top)).min(Vec2::new(right, bottom) - look.uv) - view.domain[2];
+    if look.depth <= 1.0 - view.domain[2].min(0.0) { room.x.min(room.y) } else { -1.0 }
 }
 
 /// The loop over maps of `select_finest*.wgsl`.
@@ -73,7 +73,7 @@ fn finest<M: CompareMap>(
     let (mut lit, mut rest) = (0.0, 1.0);
     for (view, map) in uniforms.views[..=last].iter().zip(maps) {
         let look = antumbra_look(key, view, position, normal);
-        let room = antumbra_room(key, view, &look);
+        let room = antumbra_room(view, &look);
         if room < 0.0 {
             continue;
         }

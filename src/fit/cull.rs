@@ -17,3 +17,10 @@ pub(crate) fn prism(window: &Window, far: f64, origin: DVec3) -> CullVolume {
     planes.push((-light.travel()).extend(far));
     CullVolume { origin, planes }
 }
+
+/// Moves the end of a prism along the light.
+pub(crate) fn end_at(prism: &mut CullVolume, far: f64) {
+    if let Some(end) = prism.planes.last_mut() {
+        end.w = far;
+    }
+}

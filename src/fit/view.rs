@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, DVec4, UVec4};
 use crate::aliasing::extremes;
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
-use crate::fit::depth_range::{DepthAlongLight, rounding_margin};
+use crate::fit::depth_range::{DepthAlongLight, rounding, rounding_margin};
 use crate::fit::layout::Layout;
 use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
@@ -40,6 +40,8 @@ pub(crate) struct Texels {
     ring: u32,
     /// Texels of border that the filter wants.
     wanted: u32,
+    /// Texels that the filter reads beyond a receiver.
+    reach: f64,
 }
 
 impl Texels {
@@ -48,7 +50,17 @@ impl Texels {
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
         let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2;
         let border = wanted.min(side.saturating_sub(1) / 2);
-        Self { inner: side - 2 * border, border, ring: border.min(1), wanted }
+        Self { inner: side - 2 * border, border, ring: border.min(1), wanted, reach: filter.reach() }
+    }
+
+    /// Why the border is smaller than its filter wants, if it is.
+    pub(crate) fn too_small(&self) -> Option<Why> {
+        (self.border < self.wanted).then_some(Why::MapTooSmall { border: self.border, wanted: self.wanted })
+    }
+
+    /// What a filter reads beyond a receiver, and one texel more: a share of the map's side.
+    pub(crate) fn read_beyond(&self) -> f64 {
+        (self.reach + 1.0) / f64::from(self.inner + 2 * self.border)
     }
 
     /// Texels of border on each side, at least one.
@@ -62,6 +74,11 @@ impl Texels {
     }
 }
 
+/// How far behind the last receiver casters are drawn, as a multiple of what f32 loses of depths along the light: where maps are found by containment, a
+/// receiver just behind a map is still looked up in it, as far as its bias lifts it for rounding. 1 could cull its caster; more costs
+/// nothing to speak of.
+const CASTERS_BEHIND: f64 = 16.0;
+
 impl Fitter<'_> {
     /// From a window to a view and its uniforms, appended to the frame; `Err` where nothing casts into the window.
     pub(crate) fn view(&self, body: &FocusBody, layout: &Layout, frame: &mut ShadowFrame) -> Result<(), Why> {
@@ -74,11 +91,13 @@ impl Fitter<'_> {
         let drawn = window.bordered(texel * f64::from(texels.border - texels.ring));
         // Casters, and the depth that they and the receivers need.
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
-        let cull = cull::prism(&drawn, last + margin, input.origin);
+        let mut cull = cull::prism(&drawn, last + margin, input.origin);
         let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
             return Err(Why::NothingCastsHere);
         };
         let depth = depth.widened(margin);
+        let lost = rounding(depth.near.abs().max(depth.far.abs()), input.origin);
+        cull::end_at(&mut cull, depth.far + CASTERS_BEHIND * lost);
         // One matrix, in f64, narrowed once; and what the receiver shader reads.
         let clip_from_render = drawn.clip_from_ray(depth.near, depth.far) * light.ray_from_render();
         let rows = self.texture_rows(&clip_from_render);
