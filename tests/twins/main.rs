@@ -96,7 +96,7 @@ fn compare(gpu: &Gpu, key: WgslKey, side: u32) -> Worst {
     let maps = ShadowMaps::new(gpu.device(), &descriptor).unwrap();
     maps.prepare(gpu.queue(), &frames[0]).unwrap();
     adapter::fill(gpu, &maps, &frames[0], &depth);
-    assert_eq!(read_depth(gpu, &maps).unwrap(), depth, "the adapter stores depths as they are");
+    assert_eq!(read_depth(gpu, &maps, 0).unwrap(), depth, "the adapter stores depths as they are");
     // Run both.
     let cases: Vec<Case> = (0..CASES).map(|_| case(&mut dice, &frames, side, &depth)).collect();
     let outcomes = adapter::run(gpu, &maps, &cases);
