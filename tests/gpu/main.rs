@@ -1,5 +1,7 @@
 //! The library's shaders through the library's wgpu layer, against rays.
 
+mod many;
+#[path = "../support/mod.rs"]
 mod support;
 
 use antumbra::gpu::{GpuError, ShadowMaps, ShadowMapsDescriptor};
