@@ -54,23 +54,23 @@
 //! ```
 
 mod error;
+mod layout;
 
-use core::num::NonZeroU64;
+use arrayvec::ArrayVec;
 
 pub use error::GpuError;
+pub use layout::{caster_layout, layout_entries};
 pub use wgpu;
 
 use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUniforms, WgslKey};
 use crate::scene::MapBudget;
+use layout::{CASTER_BYTES, bind_entries, caster_bind_group, map_dimension, most_views, uniform_bytes};
 
 /// Format of a depth map: the precision that the bias is computed for.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Bytes of a texel of [`DEPTH_FORMAT`].
 const DEPTH_TEXEL_BYTES: u64 = 4;
-
-/// Bytes that a caster's vertex shader reads: the matrix, and for warped maps the row of linear depth after it.
-const CASTER_BYTES: u64 = (size_of::<glam::Mat4>() + size_of::<glam::Vec4>()) as u64;
 
 /// What [`ShadowMaps::new`] makes.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,8 @@ pub struct ShadowMapsDescriptor<'a> {
     pub label: Option<&'a str>,
     /// The shader text that will read the maps.
     pub key: WgslKey,
-    /// The texels. A key for one view uses one layer and one view, whatever the budget allows.
+    /// The texels: a layer for each map of the key, and no more of them than the budget has layers and views. A key for
+    /// one map uses one layer and one view, whatever the budget allows.
     pub map: MapBudget,
 }
 
@@ -90,6 +91,8 @@ pub struct ShadowMaps {
     side: u32,
     texture: wgpu::Texture,
     view: wgpu::TextureView,
+    /// What casters are drawn into: a view for each layer.
+    attachments: ArrayVec<wgpu::TextureView, MAX_VIEWS>,
     compare: wgpu::Sampler,
     uniforms: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
@@ -111,9 +114,12 @@ impl ShadowMaps {
         if !(1..=largest).contains(&map.side) {
             return Err(GpuError::Side { side: map.side, largest });
         }
-        // The map, and the sampler that compares with it.
-        let texture = depth_texture(device, label, map.side);
-        let view = texture.create_view(&wgpu::TextureViewDescriptor { label, ..Default::default() });
+        // The maps, and the sampler that compares with them.
+        let layers = layers(key, map);
+        let texture = depth_texture(device, label, map.side, layers);
+        let dimension = Some(map_dimension(key));
+        let view = texture.create_view(&wgpu::TextureViewDescriptor { label, dimension, ..Default::default() });
+        let attachments = (0..layers).map(|layer| attachment(&texture, label, layer)).collect();
         let compare = device.create_sampler(&comparison_sampler(label));
         // What receivers read.
         let uniforms = lit_uniforms(device, label);
@@ -127,7 +133,7 @@ impl ShadowMaps {
             entries: &bind_entries(key, 0, &uniforms, &view, &compare),
         });
         // What casters read: one matrix per view, at dynamic offsets.
-        let caster_stride = device.limits().min_uniform_buffer_offset_alignment.max(CASTER_BYTES as u32);
+        let caster_stride = (CASTER_BYTES as u32).next_multiple_of(device.limits().min_uniform_buffer_offset_alignment);
         let casters = device.create_buffer(&wgpu::BufferDescriptor {
             label,
             size: u64::from(caster_stride) * most_views(key) as u64,
@@ -141,6 +147,7 @@ impl ShadowMaps {
             side: map.side,
             texture,
             view,
+            attachments,
             compare,
             uniforms,
             layout,
@@ -152,9 +159,10 @@ impl ShadowMaps {
         })
     }
 
-    /// Uploads a frame: the uniforms of the views that the key's shader reads (128 bytes each), and each view's matrix.
+    /// Uploads a frame: the uniforms of all maps that the key's shader reads (176 bytes each), and each view's matrix.
     ///
-    /// A frame without views uploads "everything is lit", and its map need not be drawn.
+    /// A frame may have fewer views than its key has maps: the others read lit, and their layers need not be drawn. That
+    /// of a frame without views is "everything is lit".
     ///
     /// # Errors
     /// The frame does not fit these maps; nothing was uploaded.
@@ -186,24 +194,27 @@ impl ShadowMaps {
     fn check_viewport(&self, index: usize, view: &ShadowView) -> Result<(), GpuError> {
         let at = view.viewport;
         let inside = |start: u32, length: u32| start.checked_add(length).is_some_and(|end| end <= self.side);
-        if view.layer == 0 && inside(at.x, at.z) && inside(at.y, at.w) {
+        let layers = self.layers();
+        if view.layer < layers && inside(at.x, at.z) && inside(at.y, at.w) {
             return Ok(());
         }
-        Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side })
+        Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side, layers })
     }
 
-    /// Begins the depth pass of a view: cleared to the farthest depth, its viewport set. The engine binds, and draws.
+    /// Begins the depth pass of a view: its layer cleared to the farthest depth, its viewport set. The engine binds, and
+    /// draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last one.
     pub fn caster_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
         view: &ShadowView,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites>,
     ) -> wgpu::RenderPass<'encoder> {
+        let layer = (view.layer as usize).min(self.attachments.len() - 1);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("antumbra casters"),
             color_attachments: &[],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.view,
+                view: &self.attachments[layer],
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
@@ -265,22 +276,28 @@ impl ShadowMaps {
         self.caster_stride * view.min(most_views(self.key) - 1) as u32
     }
 
-    /// The map.
+    /// The maps: a layer for each.
     #[must_use]
     pub fn depth_texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// The whole map, as an attachment or a `texture_depth_2d`.
+    /// All of it as shaders read it: a `texture_depth_2d`, or a `texture_depth_2d_array` for keys of several maps.
     #[must_use]
     pub fn depth_view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
+    /// Number of maps that there are texels for.
+    #[must_use]
+    pub fn layers(&self) -> u32 {
+        self.attachments.len() as u32
+    }
+
     /// Memory of the maps, bytes (texels only: what drivers add is not known here).
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        u64::from(self.side) * u64::from(self.side) * DEPTH_TEXEL_BYTES
+        u64::from(self.side) * u64::from(self.side) * u64::from(self.layers()) * DEPTH_TEXEL_BYTES
     }
 }
 
@@ -303,64 +320,11 @@ pub fn depth_stencil_state() -> wgpu::DepthStencilState {
     }
 }
 
-/// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's
-/// own: uniforms, map, comparison sampler. `antumbra_place` needs them where it is called: vertices as well as
-/// fragments.
-#[must_use]
-pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 3] {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding: first + binding, visibility, ty, count: None };
-    [
-        entry(
-            0,
-            wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: NonZeroU64::new(uniform_bytes(key)),
-            },
-        ),
-        entry(
-            1,
-            wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-        ),
-        entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-    ]
-}
-
-/// Bytes of `AntumbraUniforms` for a key: one view.
-fn uniform_bytes(_key: WgslKey) -> u64 {
-    size_of::<ViewUniforms>() as u64
-}
-
-/// Most views of a key's frames: one.
-fn most_views(_key: WgslKey) -> usize {
-    1
-}
-
-fn bind_entries<'a>(
-    key: WgslKey,
-    first: u32,
-    uniforms: &'a wgpu::Buffer,
-    view: &'a wgpu::TextureView,
-    compare: &'a wgpu::Sampler,
-) -> [wgpu::BindGroupEntry<'a>; 3] {
-    let block = wgpu::BufferBinding { buffer: uniforms, offset: 0, size: NonZeroU64::new(uniform_bytes(key)) };
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding: first + binding, resource };
-    [
-        entry(0, wgpu::BindingResource::Buffer(block)),
-        entry(1, wgpu::BindingResource::TextureView(view)),
-        entry(2, wgpu::BindingResource::Sampler(compare)),
-    ]
-}
-
 /// `COPY_SRC` costs nothing and lets engines and tests read the map back.
-fn depth_texture(device: &wgpu::Device, label: Option<&str>, side: u32) -> wgpu::Texture {
+fn depth_texture(device: &wgpu::Device, label: Option<&str>, side: u32, layers: u32) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label,
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: layers },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -369,6 +333,22 @@ fn depth_texture(device: &wgpu::Device, label: Option<&str>, side: u32) -> wgpu:
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
+    })
+}
+
+/// Layers of the maps: never none, for a shader has to read something.
+fn layers(key: WgslKey, map: MapBudget) -> u32 {
+    (most_views(key) as u32).min(map.layers).min(map.views).max(1)
+}
+
+/// One layer, to be drawn into.
+fn attachment(texture: &wgpu::Texture, label: Option<&str>, layer: u32) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        label,
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..Default::default()
     })
 }
 
@@ -401,37 +381,4 @@ fn lit_uniforms(device: &wgpu::Device, label: Option<&str>) -> wgpu::Buffer {
     }
     buffer.unmap();
     buffer
-}
-
-/// Layout of [`ShadowMaps::caster_bind_group`], for pipelines that are built before the maps.
-#[must_use]
-pub fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("antumbra casters"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                // Affine maps read the matrix alone, warped maps the depth row too: checked when it is drawn.
-                min_binding_size: None,
-            },
-            count: None,
-        }],
-    })
-}
-
-fn caster_bind_group(
-    device: &wgpu::Device,
-    label: Option<&str>,
-    layout: &wgpu::BindGroupLayout,
-    casters: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let matrix = wgpu::BufferBinding { buffer: casters, offset: 0, size: NonZeroU64::new(CASTER_BYTES) };
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label,
-        layout,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(matrix) }],
-    })
 }

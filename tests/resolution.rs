@@ -25,12 +25,12 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn fit(&self, technique: &Remix, side: u32) -> ShadowFrame {
-        technique.fit(&self.setting.input(self.subject, &[], side)).expect("a legal case")
+        technique.fit(&self.setting.input(self.subject, &[], technique.wgsl_key(), side)).expect("a legal case")
     }
 
     /// The library's mask, from the software renderer.
     fn mask(&self, frame: &ShadowFrame) -> Vec<f32> {
-        mask_from_bytes(&cpu::render(self.subject, &self.visible, frame, self.setting.origin).mask)
+        mask_from_bytes(&cpu::render(self.subject, &self.visible, frame, &self.setting).mask)
     }
 
     fn ideal(&self, frame: &ShadowFrame, compare: Compare) -> Vec<f32> {

@@ -41,6 +41,8 @@ pub enum GpuError {
         layer: u32,
         /// Side of the maps, texels.
         side: u32,
+        /// Number of their layers.
+        layers: u32,
     },
 }
 
@@ -56,12 +58,15 @@ impl fmt::Display for GpuError {
             Self::Views { views, most } => {
                 write!(f, "frame.views has {views} views; legal: at most {most} in these maps")
             }
-            Self::Viewport { view, viewport: at, layer, side } => write!(
-                f,
-                "frame.views[{view}].viewport is {}x{} texels at ({}, {}) of layer {layer}; legal: inside layer 0 of \
-                 {side}x{side} texels",
-                at.z, at.w, at.x, at.y
-            ),
+            Self::Viewport { view, viewport: at, layer, side, layers } => {
+                let [x, y, width, height] = at.to_array();
+                let among = if layers > 1 { format!("layers 0 to {}", layers - 1) } else { "layer 0".to_owned() };
+                write!(
+                    f,
+                    "frame.views[{view}].viewport is {width}x{height} texels at ({x}, {y}) of layer {layer}; legal: inside \
+                     {among} of {side}x{side} texels"
+                )
+            }
         }
     }
 }

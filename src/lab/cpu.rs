@@ -14,10 +14,11 @@ use rayon::prelude::*;
 use super::projection::clip_from_render;
 use super::raster::{DepthMode, DepthTarget, Hit, RasterPass, rasterise, resolve};
 use super::scene::SceneModel;
-use super::subject::Subject;
+use super::subject::{Setting, Subject};
 use crate::camera::Camera;
-use crate::encoding::depth::{DepthMap, antumbra_visible};
-use crate::frame::ShadowFrame;
+use crate::encoding::depth::DepthMap;
+use crate::encoding::split::antumbra_visibility;
+use crate::frame::{ShadowFrame, ShadowView};
 
 /// A shadow mask and what it took.
 #[derive(Clone, Debug)]
@@ -61,12 +62,32 @@ impl Visible {
 
 /// Draws a frame's maps and looks every visible point up in them.
 #[must_use]
-pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin: DVec3) -> CpuImage {
-    let Some(view) = frame.views.first() else {
+pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, setting: &Setting) -> CpuImage {
+    if frame.views.is_empty() {
         return CpuImage { mask: vec![u8::MAX; visible.hits.len()], casters_ms: 0.0, receivers_ms: 0.0 };
-    };
-    // Rasterise from the light, every object that may cast.
+    }
+    // Rasterise from the light.
     let start = Instant::now();
+    let drawn: Vec<_> = frame.views.iter().map(|view| draw(subject, frame, view, setting.origin)).collect();
+    let casters_ms = start.elapsed().as_secs_f64() * 1e3;
+    // Project each visible point into the map that serves it.
+    let start = Instant::now();
+    let size = UVec2::splat(frame.map.side);
+    let maps: Vec<_> = drawn.iter().map(|depth| DepthMap { size, depth }).collect();
+    let lit = |hit: &Option<Hit>| match hit {
+        Some(Hit { position, normal, .. }) => {
+            let eye_depth = setting.camera.eye_depth(*position, setting.origin) as f32;
+            let (position, normal) = (position.as_vec3(), normal.as_vec3());
+            antumbra_visibility(frame.wgsl, &frame.uniforms, &maps, position, normal, eye_depth)
+        }
+        None => 1.0,
+    };
+    let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();
+    CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
+}
+
+/// One map of a frame: every object that may cast into it.
+fn draw(subject: &Subject, frame: &ShadowFrame, view: &ShadowView, origin: DVec3) -> Vec<f32> {
     let mut drawn = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
     let objects = subject.objects.iter().zip(&subject.model.objects);
     let casters: Vec<_> =
@@ -75,18 +96,7 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, origin:
     let depth_from_render = frame.wgsl.shape.writes_depth().then_some(view.depth_from_render);
     let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render, origin };
     rasterise(&mut drawn, &subject.model, &casters, &pass);
-    let map = placed(&drawn, view.viewport, frame.map.side);
-    let casters_ms = start.elapsed().as_secs_f64() * 1e3;
-    // Project each visible point into the map.
-    let start = Instant::now();
-    let map = DepthMap { size: UVec2::splat(frame.map.side), depth: &map };
-    let uniforms = &frame.uniforms.views[0];
-    let lit = |hit: &Option<Hit>| match hit {
-        Some(hit) => antumbra_visible(frame.wgsl, uniforms, &map, hit.position.as_vec3(), hit.normal.as_vec3()),
-        None => 1.0,
-    };
-    let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();
-    CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
+    placed(&drawn, view.viewport, frame.map.side)
 }
 
 /// A view's depths at their place in the map; the rest is cleared.

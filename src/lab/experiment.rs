@@ -163,7 +163,7 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// The technique refused its input, or the renderer failed.
     pub fn shoot(&mut self, technique: &dyn ShadowTechnique, side: u32, repetitions: u32) -> Result<Shot, RunError> {
-        let input = self.setting.input(self.subject, &self.seen, side);
+        let input = self.setting.input(self.subject, &self.seen, technique.wgsl_key(), side);
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let fit_ns = median_fit_ns(|| technique.fit(&input).is_ok());
         match (&mut *self.backend, &self.scene) {
@@ -181,7 +181,7 @@ impl<'a> Studio<'a> {
                 Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms, receivers_ms, bytes: maps.bytes() })
             }
             (_, Prepared::Cpu(visible)) => {
-                let image = cpu::render(self.subject, visible, &frame, self.setting.origin);
+                let image = cpu::render(self.subject, visible, &frame, &self.setting);
                 let bytes = DEPTH_BYTES * texels(&frame);
                 let (casters_ms, receivers_ms) = (image.casters_ms, image.receivers_ms);
                 Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms: 0.0, receivers_ms, bytes })
@@ -202,7 +202,7 @@ impl Studio<'_> {
         side: u32,
         repetitions: u32,
     ) -> Result<Option<Race>, RunError> {
-        let input = self.setting.input(self.subject, &self.seen, side);
+        let input = self.setting.input(self.subject, &self.seen, technique.wgsl_key(), side);
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) = (&mut *self.backend, &self.scene) else {
             return Ok(None);
@@ -265,7 +265,12 @@ pub fn stage_names(remix: &Remix) -> [String; 3] {
         Warp::Fixed { strength } => format!("strength {strength}"),
     };
     let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };
-    ["one map".to_owned(), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
+    [split_name(remix).to_owned(), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
+}
+
+/// Name of a remix's split.
+fn split_name(_remix: &Remix) -> &'static str {
+    "one map"
 }
 
 /// Texels of a frame's views.

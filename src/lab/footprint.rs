@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 
 use super::cpu::Visible;
+use super::serving::serving;
 use super::subject::Setting;
 use crate::aliasing::{PointFootprint, Spread, footprint_at};
 use crate::encoding::footprint::antumbra_footprint_colour;
 use crate::frame::ShadowFrame;
 
-/// Footprints of a frame's map over a picture.
+/// Footprints of a frame's maps over a picture: at each point, those of the map that serves it.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// Pixel by pixel, row 0 on top; `None` where none is judged or no map serves what is seen.
@@ -40,10 +41,11 @@ impl Measured {
     #[must_use]
     pub fn new(visible: &Visible, frame: &ShadowFrame, setting: &Setting, valid: &[bool]) -> Self {
         // Ask the uniforms that the picture was drawn with.
-        let uniforms = frame.views.first().map(|_| &frame.uniforms.views[0]);
+        let (camera, origin) = (&setting.camera, setting.origin);
         let measure = |(pixel, valid): (usize, &bool)| {
             let hit = visible.pixel(pixel).filter(|_| *valid)?;
-            footprint_at(uniforms?, frame.map.side, &setting.camera, setting.origin, hit.position, hit.normal)
+            let view = serving(frame, camera, origin, hit.position, hit.normal)?;
+            footprint_at(&frame.uniforms.views[view], frame.map.side, camera, origin, hit.position, hit.normal)
         };
         let points: Vec<_> = valid.par_iter().enumerate().map(measure).collect();
         // Sum up.

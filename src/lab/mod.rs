@@ -16,6 +16,7 @@ pub mod projection;
 pub mod raster;
 pub mod report;
 pub mod scene;
+pub mod serving;
 pub mod shapes;
 pub mod sparse_city;
 pub mod statistics;

@@ -21,7 +21,10 @@ use rayon::prelude::*;
 
 use super::bvh::{Bvh, Ray};
 use super::case::{Case, CaseLight};
+use super::serving::serving;
+use super::subject::Setting;
 use super::truth::Truth;
+use crate::camera::Camera;
 use crate::frame::{Pcf, ShadowFrame};
 
 /// How high above a receiver's plane a shadow ray starts, as a part of the scene's radius. The points of a plane beyond
@@ -43,6 +46,7 @@ const BAND_ROWS: usize = 16;
 pub struct Oracle<'s> {
     bvh: &'s Bvh<'s>,
     travel: DVec3,
+    camera: Camera,
     width: usize,
     /// Per pixel; `None` where the truth is not valid.
     receivers: Vec<Option<Receiver>>,
@@ -58,9 +62,11 @@ struct Receiver {
     triangle: u32,
 }
 
-/// The texels of a frame's only view: texture coordinates in units of texels, from world positions.
+/// The texels of one of a frame's views: texture coordinates in units of texels, from world positions.
 #[derive(Clone, Copy)]
 struct Grid {
+    /// Number of the view.
+    view: usize,
     /// Rows over render space.
     u: DVec4,
     v: DVec4,
@@ -118,38 +124,43 @@ impl<'s> Oracle<'s> {
         };
         let pixels = 0..truth.valid.len();
         let receivers = pixels.into_par_iter().map(|pixel| truth.valid[pixel].then(|| receiver(pixel))?).collect();
-        Some(Self { bvh, travel, width, receivers })
+        Some(Self { bvh, travel, camera: Setting::of(case).camera, width, receivers })
     }
 
-    /// The mask of an ideal lookup in a frame of one view, which was fitted with its render space at `origin`: 0
-    /// (shadow) to 1 (light), row 0 on top; 1 where the truth is not valid, and everywhere without a view.
+    /// The mask of an ideal lookup in a frame, which was fitted with its render space at `origin`: 0 (shadow) to 1
+    /// (light), row 0 on top; 1 where the truth is not valid, and where no view serves. Each receiver is looked up in one
+    /// view: nothing is blended.
     #[must_use]
     pub fn mask(&self, frame: &ShadowFrame, origin: DVec3, compare: Compare) -> Vec<f32> {
-        let Some(grid) = Grid::of(frame, origin) else { return vec![1.0; self.receivers.len()] };
         let filter = frame.wgsl.filter;
         let band = |receivers: &[Option<Receiver>]| -> Vec<f32> {
             let mut known = HashMap::new();
-            let lit = |receiver: &Option<Receiver>| {
-                receiver
-                    .as_ref()
-                    .map_or(1.0, |receiver| self.look_up(receiver, &grid, filter, compare, &mut known) as f32)
+            let mut lit = |receiver: &Receiver| {
+                let grid = self.grid(receiver, frame, origin)?;
+                Some(self.look_up(receiver, &grid, filter, compare, &mut known) as f32)
             };
-            receivers.iter().map(lit).collect()
+            receivers.iter().map(|receiver| receiver.as_ref().and_then(&mut lit).unwrap_or(1.0)).collect()
         };
         self.receivers.par_chunks(BAND_ROWS * self.width).flat_map_iter(band).collect()
     }
 
     /// How many of [`AROUND`] points are lit on the plane of a pixel's receiver, in a grid of half texels from one
     /// texel before it to one texel after it in u and in v: all that a bilinear lookup there can depend on. `None`
-    /// where the truth is not valid or the frame has no view.
+    /// where the truth is not valid or no view serves.
     #[must_use]
     pub fn lit_around(&self, frame: &ShadowFrame, origin: DVec3, pixel: usize, compare: Compare) -> Option<u32> {
         let receiver = self.receivers.get(pixel)?.as_ref()?;
-        let tilt = Grid::of(frame, origin)?.tilt(receiver);
+        let tilt = self.grid(receiver, frame, origin)?.tilt(receiver);
         let half = AROUND_SIDE / 2;
         let points = (-half..=half).flat_map(|v| (-half..=half).map(move |u| DVec2::new(u.into(), v.into())));
         let offsets = points.map(|point| point / f64::from(half));
         Some(offsets.map(|offset| u32::from(self.is_lit(receiver, &tilt, compare, tilt.point(receiver, offset)))).sum())
+    }
+
+    /// The texels that serve a receiver.
+    fn grid(&self, receiver: &Receiver, frame: &ShadowFrame, origin: DVec3) -> Option<Grid> {
+        let view = serving(frame, &self.camera, origin, receiver.position - origin, receiver.normal)?;
+        Some(Grid::of(frame, view, origin))
     }
 
     /// Filters the answers of the texels around a receiver.
@@ -159,7 +170,7 @@ impl<'s> Oracle<'s> {
         grid: &Grid,
         filter: Pcf,
         compare: Compare,
-        known: &mut HashMap<(u32, I64Vec2), bool>,
+        known: &mut HashMap<(usize, u32, I64Vec2), bool>,
     ) -> f64 {
         let tilt = grid.tilt(receiver);
         let (columns, rows) = (Taps::of(filter, tilt.at.x), Taps::of(filter, tilt.at.y));
@@ -174,7 +185,8 @@ impl<'s> Oracle<'s> {
                     let centre = texel.as_dvec2() + 0.5;
                     self.is_lit(receiver, &tilt, compare, tilt.point(receiver, centre - tilt.at))
                 };
-                let lit = asked && (!drawn || *known.entry((receiver.triangle, texel)).or_insert_with(&mut ask));
+                let lit =
+                    asked && (!drawn || *known.entry((grid.view, receiver.triangle, texel)).or_insert_with(&mut ask));
                 sum += if lit { weight * row_weight } else { 0.0 };
             }
         }
@@ -209,15 +221,14 @@ impl<'s> Oracle<'s> {
 }
 
 impl Grid {
-    /// The grid of the first view; `None` without one.
-    fn of(frame: &ShadowFrame, origin: DVec3) -> Option<Self> {
-        let view = frame.views.first()?;
-        let uniforms = &frame.uniforms.views[0];
+    /// The grid of a view.
+    fn of(frame: &ShadowFrame, view: usize, origin: DVec3) -> Self {
+        let uniforms = &frame.uniforms.views[view];
         let texels = |row: [f32; 4]| Vec4::from_array(row).as_dvec4() * f64::from(frame.map.side);
-        let viewport = view.viewport.to_array().map(i64::from);
+        let viewport = frame.views[view].viewport.to_array().map(i64::from);
         let low = I64Vec2::new(viewport[0], viewport[1]);
         let high = low + I64Vec2::new(viewport[2], viewport[3]);
-        Some(Self { u: texels(uniforms.u_from_render), v: texels(uniforms.v_from_render), origin, low, high })
+        Self { view, u: texels(uniforms.u_from_render), v: texels(uniforms.v_from_render), origin, low, high }
     }
 
     fn tilt(&self, receiver: &Receiver) -> Tilt {
@@ -306,7 +317,7 @@ mod tests {
     use crate::lab::case::CaseCamera;
     use crate::lab::metrics::Scores;
     use crate::lab::scene::SceneModel;
-    use crate::lab::subject::{Setting, Subject};
+    use crate::lab::subject::Subject;
     use crate::remix::{Encoding, Remix};
     use crate::technique::ShadowTechnique;
     use crate::techniques;
@@ -344,13 +355,17 @@ mod tests {
         }
     }
 
+    fn fit(remix: &Remix, setting: &Setting, subject: &Subject, side: u32) -> ShadowFrame {
+        remix.fit(&setting.input(subject, &[], remix.wgsl_key(), side)).unwrap()
+    }
+
     /// Scores of an ideal lookup.
     fn scores(subject: &Subject, case: &Case, filter: Pcf, side: u32, compare: Compare) -> Scores {
         let truth = Truth::trace(case, &subject.model, &|| {});
         let bvh = Bvh::new(&subject.model);
         let setting = Setting::of(case);
         let remix = Remix { encoding: Encoding::Depth(filter), ..techniques::fsm() };
-        let frame = remix.fit(&setting.input(subject, &[], side)).unwrap();
+        let frame = fit(&remix, &setting, subject, side);
         let mask = Oracle::new(case, &truth, &bvh).unwrap().mask(&frame, setting.origin, compare);
         Scores::new(&mask, &truth).unwrap()
     }
@@ -389,7 +404,7 @@ mod tests {
         let truth = Truth::trace(&case, &subject.model, &|| {});
         let bvh = Bvh::new(&subject.model);
         let setting = Setting::of(&case);
-        let frame = techniques::fsm().fit(&setting.input(&subject, &[], 64)).unwrap();
+        let frame = fit(&techniques::fsm(), &setting, &subject, 64);
         let oracle = Oracle::new(&case, &truth, &bvh).unwrap();
         let on_wall: Vec<usize> =
             (0..truth.valid.len()).filter(|&pixel| truth.valid[pixel] && truth.triangle[pixel] >= 2).collect();
@@ -412,7 +427,7 @@ mod tests {
     fn a_frame_placed_elsewhere_draws_and_reads_the_same_texels() {
         let (subject, case) = (scene(&[GROUND]), case(DVec3::new(0.4, -1.0, 0.3)));
         let setting = Setting::of(&case);
-        let fitted = techniques::fsm().fit(&setting.input(&subject, &[], 256)).unwrap();
+        let fitted = fit(&techniques::fsm(), &setting, &subject, 256);
         let by = DVec2::new(0.25, -0.5);
         let moved = placed_elsewhere(&fitted, by);
         let at = glam::Vec3::new(-1.0, -6.5, -12.0);

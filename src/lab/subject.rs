@@ -12,6 +12,7 @@ use super::sparse_city::sparse_city;
 use super::treeline::treeline;
 use super::viewpoints::Viewpoint;
 use crate::camera::Camera;
+use crate::frame::WgslKey;
 use crate::light::Light;
 use crate::scene::{Aabb, DepthRange, MapBudget, Object, Scene};
 use crate::technique::FitInput;
@@ -102,9 +103,11 @@ impl Setting {
             .collect()
     }
 
-    /// What a technique is given for `subject`, what is `seen` of it, and one map of `side × side` texels.
+    /// What a technique is given for `subject`, what is `seen` of it, and as many maps of `side × side` texels as its
+    /// shader `key` ([`ShadowTechnique::wgsl_key`](crate::ShadowTechnique::wgsl_key)) has.
     #[must_use]
-    pub fn input<'a>(&self, subject: &'a Subject, seen: &'a [DVec3], side: u32) -> FitInput<'a> {
+    pub fn input<'a>(&self, subject: &'a Subject, seen: &'a [DVec3], key: WgslKey, side: u32) -> FitInput<'a> {
+        let maps = u32::from(key.maps).max(1);
         FitInput {
             camera: self.camera,
             light: self.light,
@@ -115,7 +118,7 @@ impl Setting {
                 visible_depth: Some(self.visible),
                 visible_points: seen,
             },
-            map: MapBudget::one(side),
+            map: MapBudget { side, layers: maps, views: maps },
             origin: self.origin,
             previous: None,
         }

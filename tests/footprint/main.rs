@@ -4,6 +4,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod hostile;
+#[path = "../common/keys.rs"]
+mod keys;
 mod known;
 mod shader;
 mod sight;

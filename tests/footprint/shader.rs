@@ -9,11 +9,12 @@ use antumbra::{
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 
+use crate::keys::chosen;
 use crate::sight::{Sight, differences, singular};
 use crate::support;
 use crate::support::compute::compute;
 
-/// The fragment keeps the contract of the library, behind every key.
+/// The fragment keeps the contract of the library, behind every kind of key.
 #[test]
 fn the_fragment_keeps_the_contract() {
     for word in
@@ -21,7 +22,7 @@ fn the_fragment_keeps_the_contract() {
     {
         assert!(!code_of(wgsl::FOOTPRINT).contains(word), "{word}");
     }
-    for key in WgslKey::all() {
+    for key in chosen() {
         let text = [wgsl::library(key).join("\n").as_str(), wgsl::FOOTPRINT].join("\n");
         let shader = Shader::parse(&text).unwrap_or_else(|error| panic!("{key:?}: {error}"));
         let names = |text: &Shader| -> Vec<String> {

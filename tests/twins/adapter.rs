@@ -3,13 +3,13 @@
 use antumbra::gpu::{self, ShadowMaps, wgpu};
 use antumbra::lab::gpu::Gpu;
 use antumbra::wgsl::{self, Bindings};
-use antumbra::{MapShape, Pcf, ShadowFrame, WgslKey};
+use antumbra::{MapShape, Pcf, ShadowView, WgslKey};
 
 use crate::support::compute::{compute, storage};
 use crate::{Case, Outcome};
 
-/// Draws depths into a map, texel by texel.
-pub(crate) fn fill(gpu: &Gpu, maps: &ShadowMaps, frame: &ShadowFrame, depth: &[f32]) {
+/// Draws depths into the map of a view, texel by texel.
+pub(crate) fn fill(gpu: &Gpu, maps: &ShadowMaps, view: &ShadowView, depth: &[f32]) {
     let text = "
         @group(0) @binding(0) var<storage, read> depths: array<f32>;
         @vertex fn cover(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -56,7 +56,7 @@ pub(crate) fn fill(gpu: &Gpu, maps: &ShadowMaps, frame: &ShadowFrame, depth: &[f
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: depths.as_entire_binding() }],
     });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let mut pass = maps.caster_pass(&mut encoder, &frame.views[0], None);
+    let mut pass = maps.caster_pass(&mut encoder, view, None);
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &group, &[]);
     // The rim as well, which casters leave alone.

@@ -5,13 +5,13 @@ use antumbra::encoding::depth::{
     antumbra_visible,
 };
 use antumbra::{Pcf, ViewUniforms, WgslKey};
-use glam::{DVec2, Mat4, Vec2, Vec4};
+use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
 
 use crate::rounded::{self, ULP};
 use crate::{Case, Outcome, Worst, bound};
 
 /// Weights may be off by a step of the sampler along both axes; the rest is rounding.
-const WEIGHT_TOLERANCE: f32 = 2.0 / 256.0 + 1e-5;
+pub(crate) const WEIGHT_TOLERANCE: f32 = 2.0 / 256.0 + 1e-5;
 
 pub(crate) fn lookup(key: WgslKey, case: &Case, outcome: &Outcome, worst: &mut Worst) {
     let (position, normal) = (case.position.truncate(), case.normal.truncate());
@@ -54,6 +54,38 @@ pub(crate) fn caster(case: &Case, outcome: &Outcome) {
     let difference = f64::from(outcome.caster_depth - antumbra_caster_depth(row, position)).abs();
     let size = f64::from((row * position.extend(1.0)).abs().element_sum());
     assert!(difference <= 16.0 * ULP * size, "caster depth: {outcome:?}, {difference:e}");
+}
+
+/// A receiver's lookup in a map, and what rounding may have done to it on its way to a filter.
+pub(crate) struct Doubt {
+    pub(crate) look: Lookup,
+    /// By how much its place may be off, texture coordinates.
+    pub(crate) uv: [f64; 2],
+    /// By how much its depth may be off.
+    pub(crate) depth: f64,
+}
+
+impl Doubt {
+    /// `None` where rounding decides about everything.
+    pub(crate) fn of(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Option<Self> {
+        let (look, bound) = bound::lookup(key, view, position, normal)?;
+        // Beside the lookup's own error, what the filter does to it.
+        let uv = core::array::from_fn(|axis| bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0));
+        let slope = f64::from(look.slope.abs().element_sum());
+        let depth =
+            bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
+        Some(Self { look, uv, depth })
+    }
+
+    /// A place that is in doubt by texels has more values than those around it.
+    pub(crate) fn is_wide(&self, map: &DepthMap) -> bool {
+        self.uv[0].max(self.uv[1]) > 0.25 / f64::from(map.size.x)
+    }
+
+    /// Least and largest value that a filter may have.
+    pub(crate) fn band(&self, filter: Pcf, map: &DepthMap) -> (f32, f32) {
+        band(&self.look, self.uv, self.depth, |look| antumbra_filter(filter, map, look))
+    }
 }
 
 /// Values of a function of a lookup on all sides of what rounding may do to it.
@@ -100,22 +132,15 @@ pub(crate) fn visible(key: WgslKey, map: &DepthMap, case: &Case, view: &ViewUnif
     let filter = key.filter;
     let (position, normal) = (case.position.truncate(), case.normal.truncate());
     assert!((0.0..=1.0 + WEIGHT_TOLERANCE).contains(&shader), "{shader} is no share: {case:?}");
-    let Some((look, bound)) = bound::lookup(key, view, position, normal) else { return };
-    // A place that is in doubt by texels has more values than those around it.
-    if bound.uv[0].max(bound.uv[1]) > 0.25 / f64::from(map.size.x) {
+    let Some(doubt) = Doubt::of(key, view, position, normal) else { return };
+    if doubt.is_wide(map) {
         worst.undecided += 1;
         return;
     }
-    // Beside the lookup's own error, what the filter does to it.
-    let uv = core::array::from_fn(|axis| bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0));
-    let slope = f64::from(look.slope.abs().element_sum());
-    let depth =
-        bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
-    let value = |look: &Lookup| antumbra_filter(filter, map, look);
     // The twin itself is the middle of the band.
     let twin = antumbra_visible(key, view, map, position, normal);
-    assert_eq!(twin.to_bits(), value(&look).to_bits(), "{case:?}");
-    within("visible", shader, band(&look, uv, depth, value), 1.0, case, worst);
+    assert_eq!(twin.to_bits(), antumbra_filter(filter, map, &doubt.look).to_bits(), "{case:?}");
+    within("visible", shader, doubt.band(filter, map), 1.0, case, worst);
 }
 
 fn within(name: &str, shader: f32, (low, high): (f32, f32), scale: f32, case: &Case, worst: &mut Worst) {

@@ -4,12 +4,13 @@ use antumbra::transpile::{Glsl, Shader, naga};
 use antumbra::wgsl::{self, Bindings};
 use antumbra::{MapShape, WgslKey, gpu};
 
-use crate::host::{PLACES, entries, host, stages};
-use crate::libraries;
+use crate::host::{PLACES, entries, has_two_stages, host, stages};
+use crate::keys::chosen;
+use crate::library;
 
 #[test]
 fn links_into_a_host_shader() {
-    for key in WgslKey::all() {
+    for key in chosen() {
         for place in PLACES {
             let shader = Shader::parse(&host(key, place)).unwrap_or_else(|error| panic!("{key:?} {place:?}: {error}"));
             // The three bindings are where the caller wants them.
@@ -27,14 +28,14 @@ fn links_into_a_host_shader() {
             };
             match key.shape {
                 // In two stages, vertices read the uniforms and no map, and fragments the map and no uniforms.
-                MapShape::Affine => {
+                MapShape::Affine if has_two_stages(key) => {
                     assert_eq!(globals("placing"), ["antumbra_uniforms", "view"], "{key:?}");
                     assert_eq!(globals("placed"), ["antumbra_map", "antumbra_compare"], "{key:?}");
                 }
                 // What casters write comes to their fragments from the vertices.
                 MapShape::Projective => assert_eq!(globals("thrown"), [""; 0], "{key:?}"),
                 // Here casters have no fragments.
-                MapShape::ProjectiveDepth => assert_eq!(globals("caster"), ["view"], "{key:?}"),
+                MapShape::Affine | MapShape::ProjectiveDepth => assert_eq!(globals("caster"), ["view"], "{key:?}"),
             }
         }
     }
@@ -43,7 +44,8 @@ fn links_into_a_host_shader() {
 #[test]
 fn composes_unchanged_under_naga_oil() {
     use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor};
-    for (key, text, _) in libraries() {
+    for key in chosen() {
+        let (text, _) = library(key);
         let mut composer = Composer::default();
         composer
             .add_composable_module(ComposableModuleDescriptor {
@@ -53,16 +55,20 @@ fn composes_unchanged_under_naga_oil() {
                 ..Default::default()
             })
             .unwrap_or_else(|error| panic!("{key:?}: {error}"));
+        let [texture, view] =
+            if key.maps > 1 { ["texture_depth_2d_array", "views[1], 1u"] } else { ["texture_depth_2d", "view"] };
         let source = "
             #import antumbra::{AntumbraUniforms, antumbra_visible}
             @group(2) @binding(0) var<uniform> uniforms: AntumbraUniforms;
-            @group(2) @binding(1) var map: texture_depth_2d;
+            @group(2) @binding(1) var map: TEXTURE;
             @group(2) @binding(2) var compare: sampler_comparison;
             @fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
-                return vec4f(antumbra_visible(uniforms.view, map, compare, position, vec3f(0.0, 1.0, 0.0)));
-            }";
+                return vec4f(antumbra_visible(uniforms.VIEW, map, compare, position, vec3f(0.0, 1.0, 0.0)));
+            }"
+        .replace("TEXTURE", texture)
+        .replace("VIEW", view);
         let module = composer
-            .make_naga_module(NagaModuleDescriptor { source, file_path: "host.wgsl", ..Default::default() })
+            .make_naga_module(NagaModuleDescriptor { source: &source, file_path: "host.wgsl", ..Default::default() })
             .unwrap_or_else(|error| panic!("{key:?}: {error}"));
         assert_eq!(module.entry_points.len(), 1, "{key:?}");
     }
@@ -70,9 +76,10 @@ fn composes_unchanged_under_naga_oil() {
 
 #[test]
 fn converts_to_other_languages() {
-    for (key, _, library) in libraries() {
+    for key in chosen() {
+        let (_, library) = library(key);
         let linked = Shader::parse(&host(key, PLACES[0])).unwrap();
-        let stages: Vec<_> = entries(key.shape).iter().map(|entry| linked.keep(&[entry]).unwrap()).collect();
+        let stages: Vec<_> = entries(key).iter().map(|entry| linked.keep(&[entry]).unwrap()).collect();
         for shader in std::iter::once(&library).chain(&stages) {
             assert_eq!(shader.spirv().unwrap()[0], 0x0723_0203, "{key:?}");
             assert!(shader.hlsl().unwrap().len() > 100, "{key:?}");
@@ -81,15 +88,16 @@ fn converts_to_other_languages() {
         for version in Glsl::ALL {
             let text =
                 library.glsl_library(version).unwrap_or_else(|error| panic!("{key:?} {version:?}: {error}")).text;
-            assert!(text.contains("antumbra_visible(") && text.contains("sampler2DShadow"), "{key:?} {version:?}");
+            let sampler = if key.maps > 1 { "sampler2DArrayShadow" } else { "sampler2DShadow" };
+            assert!(text.contains("antumbra_visible(") && text.contains(sampler), "{key:?} {version:?}");
             let fragment = linked.glsl(version, "fragment").unwrap_or_else(|error| panic!("{key:?}: {error}"));
             let textures: Vec<_> = fragment.samplers.iter().map(|(_, texture)| texture.as_str()).collect();
             assert!(textures.contains(&"antumbra_map") && textures.contains(&"map"), "{key:?}: {textures:?}");
             assert!(fragment.blocks.iter().any(|(_, block)| block == "antumbra_uniforms"), "{key:?}");
             let [first, second] = match key.shape {
-                MapShape::Affine => ["placing", "placed"],
+                MapShape::Affine if has_two_stages(key) => ["placing", "placed"],
                 MapShape::Projective => ["caster", "thrown"],
-                MapShape::ProjectiveDepth => continue,
+                MapShape::Affine | MapShape::ProjectiveDepth => continue,
             };
             let first = linked.glsl(version, first).unwrap_or_else(|error| panic!("{key:?}: {error}"));
             assert!(first.samplers.is_empty() && !first.blocks.is_empty(), "{key:?}: {:?}", first.samplers);
@@ -107,8 +115,10 @@ fn converts_to_other_languages() {
 fn pipelines_accept_the_layouts() {
     use gpu::wgpu;
     let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-    for key in WgslKey::all() {
-        let descriptor = gpu::ShadowMapsDescriptor { label: None, key, map: antumbra::MapBudget::one(64) };
+    for key in chosen() {
+        let maps = u32::from(key.maps);
+        let map = antumbra::MapBudget { side: 64, layers: maps, views: maps };
+        let descriptor = gpu::ShadowMapsDescriptor { label: None, key, map };
         let maps = gpu::ShadowMaps::new(&device, &descriptor).unwrap();
         // The library's own group, and its entries behind seven of the engine's in one group.
         let own = wgsl::module(key, Bindings { group: 0, first: 0 });
@@ -121,18 +131,14 @@ fn pipelines_accept_the_layouts() {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
         for (text, layout) in [(own, maps.bind_group_layout()), (merged, &layout)] {
             let stages: &[_] = match key.shape {
-                MapShape::Affine => &[("vertex", Some("fragment")), ("placing", Some("placed")), ("caster", None)],
+                MapShape::Affine if has_two_stages(key) => {
+                    &[("vertex", Some("fragment")), ("placing", Some("placed")), ("caster", None)]
+                }
                 MapShape::Projective => &[("vertex", Some("fragment")), ("caster", Some("thrown"))],
-                MapShape::ProjectiveDepth => &[("vertex", Some("fragment")), ("caster", None)],
+                MapShape::Affine | MapShape::ProjectiveDepth => &[("vertex", Some("fragment")), ("caster", None)],
             };
             for stages in stages {
-                make_pipeline(
-                    &device,
-                    &(text.clone() + &host_on_wgpu(key.shape)),
-                    layout,
-                    maps.caster_layout(),
-                    *stages,
-                );
+                make_pipeline(&device, &(text.clone() + &host_on_wgpu(key)), layout, maps.caster_layout(), *stages);
             }
         }
     }
@@ -140,8 +146,8 @@ fn pipelines_accept_the_layouts() {
 }
 
 /// An engine's shader for [`make_pipeline`]: group 1 is `caster_bind_group`.
-fn host_on_wgpu(shape: MapShape) -> String {
-    let (group, matrix) = match shape {
+fn host_on_wgpu(key: WgslKey) -> String {
+    let (group, matrix) = match key.shape {
         MapShape::Affine | MapShape::ProjectiveDepth => {
             ("@group(1) @binding(0) var<uniform> clip_from_render: mat4x4f;", "clip_from_render")
         }
@@ -159,7 +165,7 @@ fn host_on_wgpu(shape: MapShape) -> String {
             return vec4f(antumbra_visibility(at.xyz, vec3f(0.0, 1.0, 0.0), 1.0));
         }"
     .replace("MATRIX", matrix);
-    [group, &receiver, &stages(shape, matrix, "view.depth_from_render")].concat()
+    [group, &receiver, &stages(key, matrix, "view.depth_from_render")].concat()
 }
 
 /// A pipeline of a vertex entry point and, but for casters of affine maps, a fragment entry point. Casters write no

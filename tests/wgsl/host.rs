@@ -22,16 +22,21 @@ pub(crate) fn host(key: WgslKey, bindings: Bindings) -> String {
             let visible = antumbra_visibility(in.position, normalize(in.normal), distance(view.eye.xyz, in.position));
             return filter_colour(lookup(Lookup(in.position.xy))) * visible;
         }";
-    [wgsl::module(key, bindings).as_str(), engine, &stages(key.shape, "view.clip_from_world", "view.depth_from_world")]
+    [wgsl::module(key, bindings).as_str(), engine, &stages(key, "view.clip_from_world", "view.depth_from_world")]
         .concat()
 }
 
-/// Stages around everything else that a shape has, given the names of the host's matrix and row of depth. Casters of an
-/// affine map are vertices alone, and its lookup can be split over two stages. Casters of a warped map carry their
+/// Whether a key's lookup can be split over two stages.
+pub(crate) fn has_two_stages(key: WgslKey) -> bool {
+    key.shape == MapShape::Affine && key.maps == 1
+}
+
+/// Stages around everything else that a key has, given the names of the host's matrix and row of depth. Casters of an
+/// affine map are vertices alone, and the lookup in one of them can be split over two stages. Casters of a warped map carry their
 /// linear depth from the vertices to the fragments, which write it.
-pub(crate) fn stages(shape: MapShape, matrix: &str, depth_row: &str) -> String {
-    let text = match shape {
-        MapShape::Affine => {
+pub(crate) fn stages(key: WgslKey, matrix: &str, depth_row: &str) -> String {
+    let text = match key.shape {
+        MapShape::Affine if has_two_stages(key) => {
             "
         @vertex fn caster(@location(0) position: vec3f) -> @builtin(position) vec4f {
             return antumbra_caster(MATRIX, position);
@@ -49,7 +54,7 @@ pub(crate) fn stages(shape: MapShape, matrix: &str, depth_row: &str) -> String {
             return vec4f(antumbra_lit(AntumbraLookup(in.place.xy, in.place.z, in.slope)));
         }"
         }
-        MapShape::ProjectiveDepth => {
+        MapShape::Affine | MapShape::ProjectiveDepth => {
             "
         @vertex fn caster(@location(0) position: vec3f) -> @builtin(position) vec4f {
             return antumbra_caster(MATRIX, position);
@@ -70,20 +75,17 @@ pub(crate) fn stages(shape: MapShape, matrix: &str, depth_row: &str) -> String {
 }
 
 /// The entry points of [`host`], all of them.
-pub(crate) fn entries(shape: MapShape) -> &'static [&'static str] {
-    match shape {
-        MapShape::Affine => &["vertex", "fragment", "caster", "placing", "placed"],
+pub(crate) fn entries(key: WgslKey) -> &'static [&'static str] {
+    match key.shape {
+        MapShape::Affine if has_two_stages(key) => &["vertex", "fragment", "caster", "placing", "placed"],
         MapShape::Projective => &["vertex", "fragment", "caster", "thrown"],
-        MapShape::ProjectiveDepth => &["vertex", "fragment", "caster"],
+        MapShape::Affine | MapShape::ProjectiveDepth => &["vertex", "fragment", "caster"],
     }
 }
 
 /// The entry points that look a receiver up.
-pub(crate) fn lookups(shape: MapShape) -> &'static [&'static str] {
-    match shape {
-        MapShape::Affine => &["fragment", "placing", "placed"],
-        MapShape::Projective | MapShape::ProjectiveDepth => &["fragment"],
-    }
+pub(crate) fn lookups(key: WgslKey) -> &'static [&'static str] {
+    if has_two_stages(key) { &["fragment", "placing", "placed"] } else { &["fragment"] }
 }
 
 /// Where engines put the bindings: at the front, in between, and far back.

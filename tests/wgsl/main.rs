@@ -2,6 +2,8 @@
 
 mod engines;
 mod host;
+#[path = "../common/keys.rs"]
+mod keys;
 mod text;
 mod walkers;
 
@@ -11,8 +13,14 @@ use antumbra::{WgslKey, wgsl};
 /// Every key with its library: the fragments, without bindings.
 fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
     WgslKey::all().map(|key| {
-        let text = wgsl::library(key).join("\n");
-        let shader = Shader::parse(&text).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+        let (text, shader) = library(key);
         (key, text, shader)
     })
+}
+
+/// The library of a key: the fragments, without bindings.
+fn library(key: WgslKey) -> (String, Shader) {
+    let text = wgsl::library(key).join("\n");
+    let shader = Shader::parse(&text).unwrap_or_else(|error| panic!("{key:?}: {error}"));
+    (text, shader)
 }

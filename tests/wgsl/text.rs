@@ -4,9 +4,9 @@ use std::mem::offset_of;
 
 use antumbra::transpile::Shader;
 use antumbra::transpile::naga::{self, Expression, Statement, TypeInner};
-use antumbra::{MapShape, Pcf, ShadowUniforms, ViewUniforms, WgslKey, wgsl};
+use antumbra::{MAX_VIEWS, MapShape, Pcf, Select, ShadowUniforms, ViewUniforms, WgslKey, wgsl};
 
-use crate::host::{PLACES, host, lookups};
+use crate::host::{PLACES, has_two_stages, host, lookups};
 use crate::libraries;
 use crate::walkers::{any_statement, samples};
 
@@ -86,8 +86,8 @@ fn no_derivatives_and_no_pointers() {
 /// One map costs neither a loop nor an array of maps.
 #[test]
 fn one_lookup_is_straight_code() {
-    for key in WgslKey::all() {
-        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(lookups(key.shape)).unwrap();
+    for key in WgslKey::all().filter(|key| key.maps == 1) {
+        let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(lookups(key)).unwrap();
         assert!(shader.module.functions.len() >= 3, "{key:?}: nothing was looked at");
         for (_, ty) in shader.module.types.iter() {
             assert!(!matches!(ty.inner, TypeInner::Array { .. } | TypeInner::BindingArray { .. }), "{key:?}: {ty:?}");
@@ -101,16 +101,21 @@ fn one_lookup_is_straight_code() {
     }
 }
 
-/// The cost of a filter, in texture samples.
+/// The cost of a filter, in texture samples, and of finding one map among several: one lookup, or two where neighbours by
+/// depth are blended. By containment there is one in a loop, which ends at the first map that holds the receiver, or, with
+/// blending, at the last one that has a share.
 #[test]
 fn samples_per_lookup() {
-    for (key, _, shader) in libraries() {
+    for key in WgslKey::all() {
+        let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
         let expected = match key.filter {
             Pcf::Point | Pcf::Hardware2x2 => 1,
             Pcf::Box3x3 => 4,
             Pcf::Box5x5 => 9,
         };
         assert_eq!(samples(&shader.module, "antumbra_visible"), expected, "{key:?}");
+        let lookups = if key.select == Select::Depth && key.blend { 2 } else { 1 };
+        assert_eq!(samples(&shader.module, "antumbra_visibility"), lookups * expected, "{key:?}");
     }
 }
 
@@ -120,14 +125,18 @@ fn functions(key: WgslKey) -> Vec<String> {
     shader.module.functions.iter().filter_map(|(_, function)| function.name.clone()).collect()
 }
 
-/// The lookup in two stages is for maps in which it is linear in position, and for no others; each key has one lookup.
+/// The lookup in two stages is for one map in which it is linear in position, and for no others; each key has one lookup,
+/// and one way to find the map among several.
 #[test]
-fn two_stages_are_for_affine_maps_alone() {
+fn two_stages_are_for_one_affine_map_alone() {
     for key in WgslKey::all() {
         let functions = functions(key);
         let has = |name: &str| functions.iter().any(|function| function == name);
         let affine = key.shape == MapShape::Affine;
-        assert_eq!([has("antumbra_place"), has("antumbra_lit"), has("antumbra_lookup")], [affine; 3], "{key:?}");
+        assert_eq!([has("antumbra_place"), has("antumbra_lit")], [has_two_stages(key); 2], "{key:?}");
+        assert_eq!(has("antumbra_lookup"), affine, "{key:?}");
+        assert_eq!(has("antumbra_index"), key.maps > 1 && key.select == Select::Depth, "{key:?}");
+        assert_eq!(has("antumbra_room"), key.maps > 1 && key.select == Select::Finest, "{key:?}");
         assert_eq!(has("antumbra_lookup_projective"), !affine, "{key:?}");
         for name in ["antumbra_visibility", "antumbra_visible", "antumbra_caster", "antumbra_caster_depth"] {
             assert!(has(name), "{key:?}: {name}");
@@ -139,7 +148,10 @@ fn two_stages_are_for_affine_maps_alone() {
 #[test]
 fn keys_are_all_there() {
     let keys: Vec<_> = WgslKey::all().collect();
-    assert_eq!(keys.len(), Pcf::ALL.len() * MapShape::ALL.len());
+    let several = (MAX_VIEWS - 1) * Select::ALL.len() * 2;
+    assert_eq!(keys.len(), Pcf::ALL.len() * MapShape::ALL.len() * (1 + several));
+    assert_eq!(keys.iter().collect::<std::collections::HashSet<_>>().len(), keys.len());
+    assert!(keys.iter().all(|key| key.maps > 1 || (key.select == Select::Depth && !key.blend)));
     for (filter, shape) in Pcf::ALL.iter().flat_map(|filter| MapShape::ALL.map(|shape| (*filter, shape))) {
         assert_eq!(
             keys.iter().filter(|key| **key == WgslKey { filter, shape, ..WgslKey::default() }).count(),
@@ -163,12 +175,19 @@ fn layouts_agree() {
         ("across_u", offset_of!(ViewUniforms, across_u)),
         ("across_v", offset_of!(ViewUniforms, across_v)),
         ("across_w", offset_of!(ViewUniforms, across_w)),
+        ("domain", offset_of!(ViewUniforms, domain)),
     ];
+    assert_eq!(size_of::<ViewUniforms>(), 176);
     for (key, _, shader) in libraries() {
         assert_eq!(members(&shader.module, "AntumbraView"), (view.to_vec(), size_of::<ViewUniforms>()), "{key:?}");
         let (uniforms, span) = members(&shader.module, "AntumbraUniforms");
-        assert_eq!(uniforms, [("view", offset_of!(ShadowUniforms, views))], "{key:?}");
-        assert_eq!(span, size_of::<ViewUniforms>(), "{key:?}: {span} bytes are bound for one view");
+        let name = if key.maps > 1 { "views" } else { "view" };
+        assert_eq!(uniforms, [(name, offset_of!(ShadowUniforms, views))], "{key:?}");
+        assert_eq!(span, size_of::<ViewUniforms>() * usize::from(key.maps), "{key:?}: bytes that are bound");
+        // An array's elements lie as far apart as they do in memory.
+        let strides: Vec<_> = shader.module.types.iter().filter_map(|(_, ty)| stride(&ty.inner)).collect();
+        let expected: &[_] = if key.maps > 1 { &[(u32::from(key.maps), size_of::<ViewUniforms>())] } else { &[] };
+        assert_eq!(strides, expected, "{key:?}");
     }
 }
 
@@ -185,6 +204,16 @@ fn reaches_agree() {
         };
         assert_eq!(value("ANTUMBRA_REACH").to_bits(), key.filter.reach().to_bits(), "{key:?}");
         assert_eq!(value("ANTUMBRA_TAP_REACH").to_bits(), key.filter.tap_reach().to_bits(), "{key:?}");
+    }
+}
+
+/// Number of an array's elements, and how far apart they are.
+fn stride(inner: &TypeInner) -> Option<(u32, usize)> {
+    match inner {
+        TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } => {
+            Some((count.get(), *stride as usize))
+        }
+        _ => None,
     }
 }
 

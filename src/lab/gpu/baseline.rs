@@ -15,7 +15,7 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
 /// sample and a constant bias, in three hosts: *bare* (nobody reads a normal), *shaded* (both sides shade what arrives
 /// with Lambert's cosine, as engines do, and need the normal for it) and *at vertices* (its matrix, too, is left to the
-/// vertex stage). Both sides draw the same triangles into targets of the same size. Every repetition times all of them,
+/// vertex stage). Beside several maps it draws each of them, and looks everything up in one. Both sides draw the same triangles into targets of the same size. Every repetition times all of them,
 /// in alternating order, those of a ratio one after the other; the medians of the ratios are robust against other work
 /// on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,7 +186,7 @@ struct Entries {
 
 impl Entries {
     fn new(gpu: &Gpu, renderer: &Renderer, shot: &Shot, maps: &ShadowMaps) -> Self {
-        // Casters: a map of the same size, and a matrix for each view.
+        // Casters: a map of the same size, which every view is drawn into, and a matrix for each view.
         let map = map_by_hand(gpu, maps.depth_texture().size());
         let casters_by_hand = pipelines::casters_by_hand(gpu, renderer.caster_layout());
         let caster_groups = shot.views().iter().map(|view| caster_group(gpu, renderer.caster_layout(), view)).collect();
@@ -235,7 +235,7 @@ impl Entries {
 fn map_by_hand(gpu: &Gpu, size: wgpu::Extent3d) -> wgpu::TextureView {
     let map = gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("map by hand"),
-        size,
+        size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,

@@ -107,10 +107,11 @@ pub(super) enum Host {
 
 impl Host {
     /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they
-    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position.
+    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position, and vertices do not know which
+    /// of several maps their fragments read.
     pub(super) fn of(key: WgslKey) -> Self {
-        match (key.shape, key.filter) {
-            (MapShape::Affine, Pcf::Point | Pcf::Hardware2x2) => Self::Placed,
+        match key.filter {
+            Pcf::Point | Pcf::Hardware2x2 if has_two_stages(key) => Self::Placed,
             _ => Self::Whole,
         }
     }
@@ -145,12 +146,14 @@ pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
     library_receivers(gpu, key, Host::of(key))
 }
 
+/// Whether the library has the lookup of a key in two stages.
+fn has_two_stages(key: WgslKey) -> bool {
+    key.shape == MapShape::Affine && key.maps <= 1
+}
+
 /// The library's receivers in any host.
 pub(super) fn library_receivers(gpu: &Gpu, key: WgslKey, host: Host) -> Pair {
-    let placed = match key.shape {
-        MapShape::Affine => include_str!("light_placed.wgsl"),
-        MapShape::Projective | MapShape::ProjectiveDepth => "",
-    };
+    let placed = if has_two_stages(key) { include_str!("light_placed.wgsl") } else { "" };
     let text = [&wgsl::module(key, Bindings { group: 1, first: 0 }), include_str!("light_whole.wgsl"), placed].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("maps"),

@@ -5,20 +5,22 @@ use glam::UVec2;
 use super::{Gpu, GpuFailure};
 use crate::gpu::ShadowMaps;
 
-/// The contents of a map: depths row by row, row 0 on top.
+/// The contents of the map on a layer, the last one for layers that there are not: depths row by row, row 0 on top.
 ///
 /// # Errors
 /// The device failed.
-pub fn read_depth(gpu: &Gpu, maps: &ShadowMaps) -> Result<Vec<f32>, GpuFailure> {
-    let size = maps.depth_texture().size();
-    let bytes = read_texture(gpu, maps.depth_texture(), UVec2::new(size.width, size.height), size_of::<f32>() as u32)?;
+pub fn read_depth(gpu: &Gpu, maps: &ShadowMaps, layer: u32) -> Result<Vec<f32>, GpuFailure> {
+    let size = UVec2::splat(maps.depth_texture().width());
+    let layer = layer.min(maps.layers() - 1);
+    let bytes = read_layer(gpu, maps.depth_texture(), layer, size, size_of::<f32>() as u32)?;
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
-/// Bytes of a texture's first layer, rows packed.
-pub(super) fn read_texture(
+/// Bytes of a texture's layer, rows packed.
+pub(super) fn read_layer(
     gpu: &Gpu,
     texture: &wgpu::Texture,
+    layer: u32,
     size: UVec2,
     texel_bytes: u32,
 ) -> Result<Vec<u8>, GpuFailure> {
@@ -33,7 +35,7 @@ pub(super) fn read_texture(
     });
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
+        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, ..texture.as_image_copy() },
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },

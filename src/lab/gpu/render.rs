@@ -5,7 +5,7 @@ use glam::{DVec3, UVec2};
 use super::clock::{PassTimes, Stamps, Stopwatch, median};
 use super::pipelines::{self, Pair};
 use super::projection::CameraUniforms;
-use super::readback::read_texture;
+use super::readback::read_layer;
 use super::scene::Batch;
 use super::{Gpu, GpuFailure, GpuScene};
 use crate::camera::Camera;
@@ -219,7 +219,7 @@ impl<'a> Shot<'a> {
 
     /// The picture, row 0 on top.
     pub(super) fn read_mask(&self) -> Result<Vec<u8>, GpuFailure> {
-        read_texture(self.gpu, &self.mask, self.size, 1)
+        read_layer(self.gpu, &self.mask, 0, self.size, 1)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The library's shaders through the library's wgpu layer, against rays.
 
+mod many;
+#[path = "../support/mod.rs"]
 mod support;
 
 use antumbra::gpu::{GpuError, ShadowMaps, ShadowMapsDescriptor};
@@ -189,7 +191,7 @@ fn holds_analytic_depth(stage: &Stage, technique: &Remix) -> f32 {
     let (camera, side) = (support::camera(SIZE), 128_u32);
     let (frame, maps, renderer) = stage.ready(technique, camera, side);
     renderer.render(&stage.gpu, &stage.scene, &camera, &frame, &maps, &RenderOptions::default()).unwrap();
-    let map = read_depth(&stage.gpu, &maps).unwrap();
+    let map = read_depth(&stage.gpu, &maps, 0).unwrap();
     let clip_from_render = frame.views[0].clip_from_render.as_dmat4();
     let render_from_clip = clip_from_render.inverse();
     let travel = support::travel();
