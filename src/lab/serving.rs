@@ -21,7 +21,7 @@ pub fn serving(frame: &ShadowFrame, camera: &Camera, origin: DVec3, position: DV
         Select::Depth => antumbra_index(&frame.uniforms, last, camera.eye_depth(position, origin) as f32),
         Select::Finest => {
             let (position, normal) = (position.as_vec3(), normal.as_vec3());
-            let holds = |view| antumbra_room(key, view, &antumbra_look(key, view, position, normal)) >= 0.0;
+            let holds = |view| antumbra_room(view, &antumbra_look(key, view, position, normal)) >= 0.0;
             frame.uniforms.views[..views].iter().position(holds)?
         }
     };

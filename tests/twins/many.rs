@@ -189,7 +189,7 @@ fn consulted(frame: &ShadowFrame, case: &Case) -> Option<Vec<usize>> {
     let mut read = Vec::new();
     for (index, view) in uniforms.views[..frame.views.len()].iter().enumerate() {
         let doubt = Doubt::of(key, view, position, normal)?;
-        let room = f64::from(antumbra_room(key, view, &doubt.look));
+        let room = f64::from(antumbra_room(view, &doubt.look));
         let slack = doubt.uv[0].max(doubt.uv[1]) + 8.0 * ULP;
         if room.abs() <= slack || (f64::from(doubt.look.depth) - 1.0).abs() <= doubt.depth {
             return None;
