@@ -8,7 +8,7 @@ use super::cpu;
 use super::gpu::{Gpu, GpuScene, Race, RenderOptions, Renderer};
 use super::metrics::{MaskError, Scores, mask_from_bytes};
 use super::report::Row;
-use super::subject::{Setting, Subject};
+use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
 use crate::error::FitError;
 use crate::frame::{ShadowFrame, WgslKey};
@@ -156,6 +156,17 @@ impl<'a> Studio<'a> {
         };
         let seen = setting.visible_points(subject);
         Ok(Self { backend, subject, setting, scene, seen })
+    }
+
+    /// The same, in which techniques are told more or less of what is seen than by default.
+    #[must_use]
+    pub fn knowing(mut self, knowledge: Knowledge) -> Self {
+        match knowledge {
+            Knowledge::Bounds => self.seen.clear(),
+            Knowledge::Points => {}
+            Knowledge::Depths => self.setting.visible = self.setting.visible_range(self.subject),
+        }
+        self
     }
 
     /// Fits a technique, draws it, and times every step; `repetitions` of each pass, medians.

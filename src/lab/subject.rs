@@ -103,6 +103,19 @@ impl Setting {
             .collect()
     }
 
+    /// The eye depths of everything that is seen within the shadow distance, as an engine reduces last frame's depth buffer:
+    /// exact at pixel centres, and a thousandth wider.
+    #[must_use]
+    pub fn visible_range(&self, subject: &Subject) -> DepthRange {
+        let hits = Visible::draw(&subject.model, &self.camera, self.origin);
+        let depths = hits.iter().map(|hit| self.camera.eye_depth(hit.position, self.origin));
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let (near, far) = depths.fold(none, |(near, far), depth| (near.min(depth), far.max(depth)));
+        let DepthRange { near: nearest, far: farthest } = self.visible;
+        let (near, far) = ((near * (1.0 - ROOM)).max(nearest), (far * (1.0 + ROOM)).min(farthest));
+        if near <= far { DepthRange { near, far } } else { self.visible }
+    }
+
     /// What a technique is given for `subject`, what is `seen` of it, and as many maps of `side × side` texels as its
     /// shader `key` ([`ShadowTechnique::wgsl_key`](crate::ShadowTechnique::wgsl_key)) has.
     #[must_use]
@@ -123,6 +136,21 @@ impl Setting {
             previous: None,
         }
     }
+}
+
+/// By how much ranges of depth are wider than what is seen, as a share: what f32 and a rasteriser may lose.
+const ROOM: f64 = 1e-3;
+
+/// What a technique is told of what is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Knowledge {
+    /// Bounds of the scene and its objects, and the shadow distance.
+    Bounds,
+    /// A few hundred positions as well ([`Setting::visible_points`]).
+    #[default]
+    Points,
+    /// Those, and the range of the depth buffer ([`Setting::visible_range`]).
+    Depths,
 }
 
 /// Columns and rows of [`Setting::visible_points`]: one pixel in 25 × 25 of an 800 × 600 picture. Fewer miss thin
