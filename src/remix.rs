@@ -131,10 +131,14 @@ impl ShadowTechnique for Remix {
         match self.split {
             Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
                 // Maps that stand still are for depths that do.
-                let still = self.stabilise == Stabilise::SnapTexels && body.depth.far.is_finite();
-                let range = if still { body.depth } else { body.seen_depth(&input.camera, input.origin) };
+                let stable = self.stabilise == Stabilise::SnapTexels;
+                let range = if stable && body.depth.far.is_finite() {
+                    body.depth
+                } else {
+                    body.seen_depth(&input.camera, input.origin)
+                };
                 let lay_out = |fitter: &Fitter, body: &mut _, frame: &mut _| self.lay_out(fitter, body, frame);
-                fitter.slices(&body, range, &splits, lay_out, &mut frame);
+                fitter.slices(&body, range, &splits, stable, lay_out, &mut frame);
             }
             split => {
                 let layout = self.lay_out(&fitter, &mut body, &mut frame);

@@ -48,6 +48,11 @@ pub enum Why {
         /// Number of the view.
         view: u8,
     },
+    /// The map of this split has texels that are hardly larger, or too small to be seen, and serves its receivers as well.
+    MetBy {
+        /// Number of the split.
+        split: u8,
+    },
     /// The budget has no map left (`map.views`, `map.layers`).
     NoMapLeft,
     /// The visible depth range holds no depth of the frustum.
@@ -141,6 +146,7 @@ impl fmt::Display for Why {
             Self::NothingCastsHere => write!(f, "nothing casts a shadow on the receivers in view"),
             Self::NoDepth => write!(f, "no eye depths between its planes"),
             Self::ServedBy { view } => write!(f, "the map of view {view} serves it as well"),
+            Self::MetBy { split } => write!(f, "the map of split {split} is as good there"),
             Self::NoMapLeft => write!(f, "the budget has no map left"),
             Self::OutsideVisibleDepth { near, far } => {
                 write!(f, "the visible depth [{near:.4}, {far:.4}] misses the frustum")

@@ -29,6 +29,7 @@ const PSSM: DepthSplits = DepthSplits {
     maps: 3,
     scheme: Scheme::Practical { lambda: 0.5, offset: 0.0 },
     select: Select::Depth,
+    enough: 0.0,
     ..DepthSplits::DEFAULT
 };
 

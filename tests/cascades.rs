@@ -12,7 +12,7 @@ const PRACTICAL: Scheme = Scheme::Practical { lambda: 0.5, offset: 0.0 };
 
 /// Four snapped cascades that are found by depth and blended over a tenth.
 fn cascades() -> Remix {
-    let splits = DepthSplits { maps: 4, scheme: PRACTICAL, select: Select::Depth, blend: 0.1, fade: true };
+    let splits = DepthSplits { maps: 4, scheme: PRACTICAL, select: Select::Depth, blend: 0.1, fade: true, enough: 0.0 };
     Remix { split: Split::Depth(splits), warp: Warp::Focused, stabilise: Stabilise::SnapTexels, ..Remix::default() }
 }
 

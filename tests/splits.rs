@@ -42,7 +42,7 @@ fn remixes() -> impl Strategy<Value = Remix> {
     let splits =
         (1..=8_u8, scheme(), any::<bool>(), blend, any::<bool>()).prop_map(|(maps, scheme, finest, blend, fade)| {
             let select = if finest { Select::Finest } else { Select::Depth };
-            DepthSplits { maps, scheme, select, blend, fade }
+            DepthSplits { maps, scheme, select, blend, fade, ..DepthSplits::DEFAULT }
         });
     (warp, splits, any::<bool>()).prop_map(|(warp, splits, snap)| Remix {
         split: Split::Depth(splits),

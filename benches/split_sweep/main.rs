@@ -29,7 +29,11 @@ fn techniques() -> Vec<(String, Remix, Knowledge)> {
     let practical = |lambda| Scheme::Practical { lambda, offset: 0.0 };
     let mut all = vec![];
     for lambda in [0.5, 0.3, 0.65, 0.8, 1.0] {
-        all.push((format!("pssm {lambda}"), split(practical(lambda), Select::Depth, Warp::Focused), Knowledge::Bounds));
+        let mut remix = split(practical(lambda), Select::Depth, Warp::Focused);
+        if let Split::Depth(splits) = &mut remix.split {
+            splits.enough = 0.0;
+        }
+        all.push((format!("pssm {lambda}"), remix, Knowledge::Bounds));
     }
     for (name, knowledge) in [("", Knowledge::Bounds), (" points", Knowledge::Points), (" depths", Knowledge::Depths)] {
         all.push((format!("pssm .5 finest{name}"), split(practical(0.5), Select::Finest, Warp::Focused), knowledge));

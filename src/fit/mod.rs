@@ -2,6 +2,7 @@
 
 pub(crate) mod bias;
 pub(crate) mod cull;
+pub(crate) mod cuts;
 pub(crate) mod depth_range;
 pub(crate) mod layout;
 pub(crate) mod slices;

@@ -1,91 +1,77 @@
 //! Several maps: one slice of what is in view after the other, each fitted as a single map would be.
+//!
+//! # References
+//! - Zhang, Sun, Xu & Lu, *Parallel-split shadow maps for large-scale virtual environments*, 2006.
 
-use crate::fit::depth_range::{rounding, rounding_margin};
+use crate::fit::cuts::{Cut, Cuts};
 use crate::fit::layout::Layout;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
 use crate::frame::{Footprint, Select, ShadowFrame};
 use crate::report::{Part, Why};
 use crate::scene::DepthRange;
-use crate::split::depth::{DepthSplits, planes};
-use crate::split::equal_error;
+use crate::split::depth::DepthSplits;
 
 /// How far beyond its rim the last map is looked up, texture coordinates: as far as receivers are, which read lit there.
 const NO_RIM: f32 = -1e30;
 
-/// Depth of a slice as a multiple of what f32 loses of positions: thinner ones are told apart by rounding alone. Larger gives up slices
-/// that are of use.
-const THINNEST: f64 = 4.0;
-
 impl Fitter<'_> {
-    /// Cuts a body in view into slices, lays each out with `lay_out`, and appends their views; `range` are the eye depths to cut.
+    /// Cuts a body in view into slices, lays each out with `lay_out`, and appends their views; `range` are the eye depths to cut, and
+    /// `stable` keeps slices that this frame could do without.
     ///
-    /// Slices without receivers, without casters, or without depth get no map, and slices behind a map of the whole scene
-    /// need none: the report says so.
+    /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share one, and slices
+    /// behind a map of the whole scene need none: the report says so.
     pub(crate) fn slices(
         &self,
         body: &FocusBody,
         range: DepthRange,
         splits: &DepthSplits,
+        stable: bool,
         lay_out: impl Fn(&Self, &mut FocusBody, &mut ShadowFrame) -> Layout,
         frame: &mut ShadowFrame,
     ) {
-        // As many slices as there are maps; maps without room for their filter's border do not know what they hold.
-        let mut budget = u32::from(splits.maps).min(self.input.map.views).min(self.input.map.layers) as u8;
-        (budget..splits.maps).for_each(|split| frame.leave_out(Part::Split(split), Why::NoMapLeft));
-        if let Some(why) = self.texels.too_small().filter(|_| splits.select == Select::Finest) {
-            (1..budget).for_each(|split| frame.leave_out(Part::Split(split), why));
-            budget = 1;
-        }
-        let (camera, origin) = (&self.input.camera, self.input.origin);
-        let planes = planes(&splits.scheme, budget, range.near, range.far).unwrap_or_else(|| {
-            let samples = self.input.scene.visible_points;
-            equal_error::planes(body, camera, self.travel, samples, origin, budget, range)
-        });
-        let blend = f64::from(splits.blend);
-        // Receivers know their places and their depths as well as f32 does.
-        let margin =
-            rounding_margin(&body.vertices, origin).max(rounding(range.near.abs().max(range.far.abs()), origin));
-        let (mut near, mut before) = (range.near, range.near);
-        for split in 0..budget {
-            let far = planes[usize::from(split) + 1];
-            let last = split + 1 == budget;
-            if !(far - near > THINNEST * margin || last) {
-                frame.leave_out(Part::Split(split), Why::NoDepth);
-                continue;
-            }
+        let Cuts { slices, margin } = self.cuts(body, range, splits, stable, frame);
+        let mut before = 0.0;
+        for (number, cut) in slices.iter().enumerate() {
             // The slice, and the band in which the one before gives way to it.
-            let start = near;
-            let from = start - blend * (start - before);
-            (before, near) = (start, far);
-            let depth = DepthRange { near: from - margin, far: far + margin };
-            let Some(mut slice) = body.slice(camera, depth, origin) else {
-                frame.leave_out(Part::Split(split), Why::NoReceiversInView { near: start, far });
+            let DepthRange { near, far } = cut.depth;
+            let depth = DepthRange { near: near - before - margin, far: far + margin };
+            before = f64::from(splits.blend) * (far - near);
+            let Some(mut slice) = body.slice(&self.input.camera, depth, self.input.origin) else {
+                frame.leave_out(Part::Split(cut.split), Why::NoReceiversInView { near, far });
                 continue;
             };
+            // One map.
             let index = frame.views.len() as u8;
             let fitter = Self { index, ..*self };
             let layout = lay_out(&fitter, &mut slice, frame);
             if let Err(why) = fitter.view(&slice, &layout, frame) {
-                frame.leave_out(Part::Split(split), why);
+                frame.leave_out(Part::Split(cut.split), why);
                 continue;
             }
-            // A map of the whole scene serves all that follows.
-            let (end, last_start) =
-                if layout.whole { (range.far, planes[usize::from(budget) - 1]) } else { (far, start) };
-            let (near, far, band) = (start, end, blend * (end - last_start));
-            let domain = match splits.select {
-                Select::Depth => [near, far, far - band, if band > 0.0 { band.recip() } else { 0.0 }],
-                Select::Finest => [near, far, self.texels.read_beyond(), if blend > 0.0 { 2.0 / blend } else { 0.0 }],
-            };
-            frame.uniforms.views[usize::from(index)].domain = domain.map(|depth| depth as f32);
+            // What it serves; a map of the whole scene serves all that follows.
+            frame.uniforms.views[usize::from(index)].domain = self.domain(splits, cut.depth, before);
             if layout.whole {
-                (split + 1..budget)
-                    .for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: index }));
+                let last = slices.last().unwrap_or(cut).depth;
+                let band = f64::from(splits.blend) * (last.far - last.near);
+                frame.uniforms.views[usize::from(index)].domain =
+                    self.domain(splits, DepthRange { near, far: last.far }, band);
+                let served = |next: &Cut| (Part::Split(next.split), Why::ServedBy { view: index });
+                slices[number + 1..].iter().map(served).for_each(|(part, why)| frame.leave_out(part, why));
                 break;
             }
         }
         self.finish(splits, range, frame);
+    }
+
+    /// What a shader has to know to find the map of a slice, which gives way over `band` world units.
+    fn domain(&self, splits: &DepthSplits, DepthRange { near, far }: DepthRange, band: f64) -> [f32; 4] {
+        let inverse = |width: f64| if width > 0.0 { width.recip() } else { 0.0 };
+        let domain = match splits.select {
+            Select::Depth => [near, far, far - band, inverse(band)],
+            Select::Finest => [near, far, self.texels.read_beyond(), inverse(0.5 * f64::from(splits.blend))],
+        };
+        domain.map(|depth| depth as f32)
     }
 
     /// One view serves everything.

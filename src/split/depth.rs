@@ -34,6 +34,9 @@ const LARGEST_OFFSET: f64 = 1e15;
 /// Largest share of a slice over which it may give way to the next one. At 1 every point would be looked up twice.
 const MOST_BLEND: f64 = 0.5;
 
+/// Most pixels of a texel that may be called enough: blocks of shadow that anyone sees.
+const MOST_PIXELS: f64 = 16.0;
+
 /// Maps for ranges of eye depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthSplits {
@@ -45,8 +48,11 @@ pub struct DepthSplits {
     pub select: Select,
     /// Share of a slice, from its far end, over which it gives way to the next one, 0 (a hard edge) to 0.5. Costs a second lookup there.
     pub blend: f32,
-    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth.
+    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth. Found by depth
+    /// only.
     pub fade: bool,
+    /// Pixels that a texel may measure for more maps not to pay, 0 (use all of them) to 16. Shadow edges are off by half of it.
+    pub enough: f32,
 }
 
 /// Where the planes between slices are.
@@ -80,7 +86,7 @@ impl Default for DepthSplits {
 impl DepthSplits {
     /// Four maps of equal error, the finest that holds a receiver, hard edges.
     pub const DEFAULT: Self =
-        Self { maps: 4, scheme: Scheme::EqualError, select: Select::Finest, blend: 0.0, fade: false };
+        Self { maps: 4, scheme: Scheme::EqualError, select: Select::Finest, blend: 0.0, fade: false, enough: 0.25 };
 
     /// As many maps as there are depths, and one more: `planes` are the eye depths between them, world units, ascending. At most seven are
     /// read.
@@ -100,6 +106,7 @@ impl DepthSplits {
         };
         within("split.maps", f32::from(self.maps), 1.0, MAX_VIEWS as f64, "1 to 8")?;
         within("split.blend", self.blend, 0.0, MOST_BLEND, "0 to 0.5")?;
+        within("split.enough", self.enough, 0.0, MOST_PIXELS, "0 to 16")?;
         match &self.scheme {
             Scheme::Practical { lambda, offset } => {
                 within("split.scheme.lambda", *lambda, 0.0, 1.0, "0 to 1")?;

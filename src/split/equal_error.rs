@@ -18,13 +18,11 @@
 //! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: error of splits in one dimension.
 
 use arrayvec::ArrayVec;
-use glam::{DVec3, Vec3Swizzles};
+use glam::DVec3;
 
 use super::depth::{MAX_PLANES, Scheme, planes as planes_of};
+use super::profile::Profile;
 use crate::camera::Camera;
-use crate::focus::FocusBody;
-use crate::light_space::LightSpace;
-use crate::math::convex::MAX_EDGES;
 use crate::scene::DepthRange;
 
 /// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
@@ -46,9 +44,8 @@ const CLASSES: usize = 48;
 const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// What a slice costs, as a function of its planes.
-struct Cost {
-    /// Edges of the body: eye depth, place along the view and across it, of both ends.
-    edges: ArrayVec<[DVec3; 2], MAX_EDGES>,
+struct Cost<'a> {
+    profile: &'a Profile,
     range: DepthRange,
     /// Share of what is seen before the end of each class.
     seen: [f64; CLASSES + 1],
@@ -58,17 +55,15 @@ struct Cost {
 ///
 /// Kind of promise: typical; a local optimum. O(maps · edges) evaluations of a few flops, O(samples).
 pub(crate) fn planes(
-    body: &FocusBody,
+    profile: &Profile,
     camera: &Camera,
-    travel: DVec3,
     samples: &[DVec3],
-    origin: DVec3,
     maps: u8,
     range: DepthRange,
 ) -> ArrayVec<f64, MAX_PLANES> {
     let start = Scheme::Practical { lambda: START, offset: 0.0 };
     let mut planes = planes_of(&start, maps, range.near, range.far).unwrap_or_default();
-    let cost = Cost::of(body, camera, travel, samples, origin, range);
+    let cost = Cost::of(profile, camera, samples, range);
     for _ in 0..SWEEPS {
         for index in 1..planes.len().saturating_sub(1) {
             let (before, after) = (planes[index - 1], planes[index + 1]);
@@ -99,22 +94,9 @@ fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     at(0.5 * (left + right)).clamp(low, high)
 }
 
-impl Cost {
-    fn of(
-        body: &FocusBody,
-        camera: &Camera,
-        travel: DVec3,
-        samples: &[DVec3],
-        origin: DVec3,
-        range: DepthRange,
-    ) -> Self {
-        // One side of every window along the view.
-        let light = LightSpace::fixed(travel);
-        let view = light.ray(camera.forward()).truncate();
-        let light = light.turned(view.try_normalize().unwrap_or(glam::DVec2::X));
-        let place = |vertex: DVec3| light.ray(vertex).truncate().extend(camera.eye_depth(vertex, origin)).zxy();
-        let edges = body.edges().map(|ends| ends.map(place)).collect();
-        let mut cost = Self { edges, range, seen: [0.0; CLASSES + 1] };
+impl<'a> Cost<'a> {
+    fn of(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
+        let mut cost = Self { profile, range, seen: [0.0; CLASSES + 1] };
         // Count what is seen; what is not known is spread evenly.
         let mut count = 0.0;
         for sample in samples {
@@ -151,24 +133,6 @@ impl Cost {
 
     /// One summand of (1).
     fn of_slice(&self, near: f64, far: f64) -> f64 {
-        let mut low = DVec3::INFINITY;
-        let mut high = DVec3::NEG_INFINITY;
-        for [from, to] in &self.edges {
-            // The part of the edge between the planes.
-            let (first, last) = if from.x <= to.x { (from, to) } else { (to, from) };
-            if first.x > far || last.x < near {
-                continue;
-            }
-            let length = last.x - first.x;
-            let at = |depth: f64| {
-                if length > 0.0 { *first + (*last - *first) * ((depth - first.x) / length) } else { *first }
-            };
-            for end in [at(near.max(first.x)), at(far.min(last.x))] {
-                low = low.min(end);
-                high = high.max(end);
-            }
-        }
-        let size = (high - low).max(DVec3::ZERO);
-        (self.before(far) - self.before(near)) * (size.y + size.z)
+        (self.before(far) - self.before(near)) * self.profile.size(near, far)
     }
 }

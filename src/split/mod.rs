@@ -2,6 +2,7 @@
 
 pub mod depth;
 pub(crate) mod equal_error;
+pub(crate) mod profile;
 
 pub use depth::{DepthSplits, Scheme};
 
