@@ -129,7 +129,8 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 /// The debug view of aliasing, for engines that ask for it: append it to the text of [`module`] or [`library`].
 /// `antumbra_footprint(view, side, position, d_position_dx, d_position_dy)` gives the texels over a pixel, of which 1
 /// or more mean no aliasing; `antumbra_footprint_colour(texels_per_pixel)` gives an sRGB colour of that. The
-/// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`.
+/// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`, with several
+/// found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");

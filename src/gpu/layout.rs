@@ -8,8 +8,8 @@ use crate::frame::{MAX_VIEWS, ViewUniforms, WgslKey};
 pub(super) const CASTER_BYTES: u64 = (size_of::<glam::Mat4>() + size_of::<glam::Vec4>()) as u64;
 
 /// Layout entries that match [`wgsl::module`](crate::wgsl::module) with the same `first`, for a group of the engine's
-/// own: uniforms, map (an array of them for several maps), comparison sampler. `antumbra_place` needs them where it is called: vertices as well as
-/// fragments.
+/// own: uniforms, map (an array of them for several maps), comparison sampler. `antumbra_place` needs them where it is
+/// called: vertices as well as fragments.
 #[must_use]
 pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) -> [wgpu::BindGroupLayoutEntry; 3] {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding: first + binding, visibility, ty, count: None };
@@ -66,7 +66,8 @@ pub(super) fn bind_entries<'a>(
     ]
 }
 
-/// Layout of [`ShadowMaps::caster_bind_group`](super::ShadowMaps::caster_bind_group), for pipelines that are built before the maps.
+/// Layout of [`ShadowMaps::caster_bind_group`](super::ShadowMaps::caster_bind_group), for pipelines that are built
+/// before the maps.
 #[must_use]
 pub fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

@@ -58,7 +58,12 @@ mod tests {
     }
 
     /// A map of what is near and a map of everything, and both in one frame.
-    fn frames(subject: &Subject, setting: &Setting, visible: &Visible, select: Select) -> [ShadowFrame; 3] {
+    fn frames(
+        subject: &Subject,
+        setting: &Setting,
+        visible: &Visible,
+        select: Select,
+    ) -> (ShadowFrame, ShadowFrame, ShadowFrame) {
         let technique = techniques::fsm();
         let mut depths: Vec<f64> =
             visible.iter().map(|hit| setting.camera.eye_depth(hit.position, setting.origin)).collect();
@@ -76,7 +81,7 @@ mod tests {
         both.uniforms.views[1] = whole.uniforms.views[0];
         // The rest is in nobody's domain.
         both.uniforms.views[1].domain = [middle as f32, depths[depths.len() - depths.len() / 10] as f32, 0.0, 0.0];
-        [near, whole, both]
+        (near, whole, both)
     }
 
     /// The view that is named is the view that is read: of one map in shadow and one in light, one can tell.
@@ -85,7 +90,7 @@ mod tests {
         let (subject, _, setting) = city();
         let visible = Visible::draw(&subject.model, &setting.camera, setting.origin);
         for select in Select::ALL {
-            let [.., frame] = frames(&subject, &setting, &visible, select);
+            let (.., frame) = frames(&subject, &setting, &visible, select);
             let (dark, light) = ([-2.0; 16], [2.0; 16]);
             let mut served = [0; 3];
             for Hit { position, normal, .. } in visible.iter().copied() {
@@ -119,7 +124,7 @@ mod tests {
         let oracle = Oracle::new(&case, &truth, &bvh).expect("directional light");
         let width = case.viewport[0] as usize;
         for select in Select::ALL {
-            let [near, whole, both] = frames(&subject, &setting, &visible, select);
+            let (near, whole, both) = frames(&subject, &setting, &visible, select);
             let of = |frame: &ShadowFrame| {
                 let painted = Measured::new(&visible, frame, &setting, &truth.valid).paint(width);
                 (painted, oracle.mask(frame, setting.origin, Compare::Plane))

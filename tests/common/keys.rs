@@ -6,7 +6,7 @@ use antumbra::{MapShape, Pcf, Select, WgslKey};
 const COUNTS: [u8; 3] = [2, 4, 8];
 
 /// Every key of one map; of several, every way to find the map among few, some and most of them in every shape, with the
-/// default filter: no text knows both how it filters and how it selects.
+/// default filter: of how it filters, the text that selects knows nothing but the reach.
 pub(crate) fn chosen() -> impl Iterator<Item = WgslKey> {
     let is_one_of_several = |key: &WgslKey| COUNTS.contains(&key.maps) && key.filter == Pcf::Hardware2x2;
     WgslKey::all().filter(move |key| key.maps == 1 || is_one_of_several(key))
