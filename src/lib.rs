@@ -96,12 +96,13 @@ pub mod lab;
 pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use error::FitError;
 pub use fit::bias::Bias;
+pub use fit::snap::Stabilise;
 pub use frame::{
     CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, Select, ShadowFrame,
     ShadowUniforms, ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
 pub use light::Light;
-pub use remix::{DepthLaw, Encoding, Remix, Stabilise};
+pub use remix::{DepthLaw, Encoding, Remix};
 pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
 pub use split::{DepthSplits, Scheme, Split};

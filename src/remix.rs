@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::error::FitError;
 use crate::fit::bias::Bias;
-use crate::fit::layout::Layout;
+use crate::fit::layout::How;
+use crate::fit::snap::Stabilise;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
@@ -38,17 +39,6 @@ pub enum DepthLaw {
     /// Linear depth over w, as the rasteriser makes it: early depth tests and the hardware's bias work, and casters need no fragment shader. Depth
     /// falls where w grows, so that the bias grows by as much: contacts leak more the stronger the warp.
     Projective,
-}
-
-/// Whether texels keep their place in the world while the camera moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Stabilise {
-    /// The tightest fit; edges may crawl when the camera moves.
-    #[default]
-    Off,
-    /// A window of constant size that moves by whole texels: edges never crawl, for a larger window.
-    SnapTexels,
 }
 
 /// A technique, as a choice of stages. Every combination is legal; the named ones are in [`techniques`](crate::techniques).
@@ -127,43 +117,23 @@ impl ShadowTechnique for Remix {
         body.left_out.iter().for_each(|cut| frame.leave_out(cut.part, cut.why));
         // Lay it out, and draw the conclusions: views and uniforms.
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
-        let fitter = Fitter { input: &input, travel, texels, bias: self.bias, index: 0 };
+        let how = How { warp: self.warp, guard: self.guard, stabilise: self.stabilise };
+        let fitter = Fitter { input: &input, travel, texels, bias: self.bias, how, index: 0 };
         match self.split {
             Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
-                // Maps that stand still are for depths that do.
-                let stable = self.stabilise == Stabilise::SnapTexels;
-                let range = if stable && body.depth.far.is_finite() {
-                    body.depth
-                } else {
-                    body.seen_depth(&input.camera, input.origin)
-                };
-                let lay_out = |fitter: &Fitter, body: &mut _, frame: &mut _| self.lay_out(fitter, body, frame);
-                fitter.slices(&body, range, &splits, stable, lay_out, &mut frame);
+                fitter.slices(&body, &splits, &mut frame);
             }
             split => {
-                let layout = self.lay_out(&fitter, &mut body, &mut frame);
+                let layout = fitter.lay_out(&mut body, &mut frame);
                 if let Err(why) = fitter.view(&body, &layout, &mut frame) {
                     frame.leave_out(Part::Light, why);
                 }
                 // A map of the whole scene is the same for every slice.
                 (1..split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));
-                fitter.finish_one(split.selection().0, &mut frame);
+                Fitter::finish_one(split.selection().0, &mut frame);
             }
         }
         Ok(frame)
-    }
-}
-
-impl Remix {
-    /// The window of a map around a body; the body is what it is around afterwards.
-    fn lay_out(&self, fitter: &Fitter, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
-        match (self.stabilise, self.warp) {
-            (Stabilise::Off, Warp::Uniform) => fitter.tight(body),
-            (Stabilise::Off, Warp::Focused) => fitter.focused(body, frame),
-            (Stabilise::SnapTexels, Warp::Uniform) => fitter.still(body, Why::AlreadyStill, frame),
-            (Stabilise::Off, warp) => fitter.warped(body, warp, self.guard, frame),
-            (Stabilise::SnapTexels, _) => fitter.snapped(body, frame),
-        }
     }
 }
 

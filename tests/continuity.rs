@@ -2,7 +2,9 @@
 
 mod common;
 
-use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, techniques};
+use antumbra::{
+    Aabb, Camera, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, Split, techniques,
+};
 use common::dice::Dice;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4Swizzles};
 
@@ -205,7 +207,8 @@ const MOST_REMAINS: f64 = 3.0;
 /// Guarded warps and least-error follow the camera and the light without a jump, through the direction of light too.
 #[test]
 fn warped_maps_are_continuous() {
-    for (name, technique) in techniques::NAMED {
+    // Splits join and part as the picture needs them; a map's own course is what is promised.
+    for (name, technique) in techniques::NAMED.iter().filter(|(_, technique)| technique().split == Split::One) {
         let found = findings(&technique());
         println!(
             "{name}: {} paths, {} jump, {} uneven, {} not halved",

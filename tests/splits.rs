@@ -29,6 +29,16 @@ fn scheme() -> impl Strategy<Value = Scheme> {
     ]
 }
 
+/// Hostile inputs; in every second case all around the camera, so that there is much to split.
+fn worlds() -> impl Strategy<Value = Inputs> {
+    let around = (inputs(), -1.0..5.0_f64).prop_map(|(inputs, log)| {
+        let (eye, half) = (inputs.camera.world_from_view.w_axis.truncate(), 10.0_f64.powf(log));
+        let bounds = Aabb::new(eye - half, eye + half);
+        Inputs { casters: bounds, receivers: bounds, objects: Vec::new(), ..inputs }
+    });
+    prop_oneof![inputs(), around]
+}
+
 fn remixes() -> impl Strategy<Value = Remix> {
     let warp = prop::sample::select(vec![
         Warp::Uniform,
@@ -39,11 +49,13 @@ fn remixes() -> impl Strategy<Value = Remix> {
         Warp::LeastError,
     ]);
     let blend = prop_oneof![2 => Just(0.0), 1 => Just(0.5), 1 => 0.0..0.5_f32];
-    let splits =
-        (1..=8_u8, scheme(), any::<bool>(), blend, any::<bool>()).prop_map(|(maps, scheme, finest, blend, fade)| {
+    let enough = prop_oneof![2 => Just(0.0), 1 => Just(0.25), 1 => 0.0..16.0_f32];
+    let splits = (1..=8_u8, scheme(), any::<bool>(), blend, any::<bool>(), enough).prop_map(
+        |(maps, scheme, finest, blend, fade, enough)| {
             let select = if finest { Select::Finest } else { Select::Depth };
-            DepthSplits { maps, scheme, select, blend, fade, ..DepthSplits::DEFAULT }
-        });
+            DepthSplits { maps, scheme, select, blend, fade, enough }
+        },
+    );
     (warp, splits, any::<bool>()).prop_map(|(warp, splits, snap)| Remix {
         split: Split::Depth(splits),
         warp,
@@ -128,13 +140,13 @@ fn nothing_is_lost_between_splits() {
     nothing_is_lost_over_hostile_inputs();
     let [cases, reached, several] = CASES.read();
     println!("{cases} cases, {reached} with a shadowed receiver in view, {several} of them with several views");
-    assert!(cases >= 100_000 && reached >= cases / 8 && several >= cases / 40);
+    assert!(cases >= 100_000 && reached >= cases / 8 && several >= cases / 16);
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 100_000, max_shrink_iters: 2_000, ..ProptestConfig::default() })]
 
-    fn nothing_is_lost_over_hostile_inputs(inputs in inputs(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
+    fn nothing_is_lost_over_hostile_inputs(inputs in worlds(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
         CASES.count(0);
         let frame = sound(remix, &inputs)?;
         // Slices ascend, and leave no gap that is not accounted for.

@@ -9,6 +9,7 @@
 use arrayvec::ArrayVec;
 
 use crate::fit::depth_range::{rounding, rounding_margin};
+use crate::fit::snap::Stabilise;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
 use crate::frame::{MAX_VIEWS, Select, ShadowFrame};
@@ -42,14 +43,13 @@ pub(crate) struct Cuts {
 }
 
 impl Fitter<'_> {
-    /// Cuts the eye depths `range` of a body; with `stable`, slices that this frame could do without are kept, because the next one may need
-    /// them.
+    /// Cuts the eye depths `range` of a body. Of maps that stand still, those that this frame could do without are kept, because the next one
+    /// may need them.
     pub(crate) fn cuts(
         &self,
         body: &FocusBody,
         range: DepthRange,
         splits: &DepthSplits,
-        stable: bool,
         frame: &mut ShadowFrame,
     ) -> Cuts {
         let (camera, origin) = (&self.input.camera, self.input.origin);
@@ -60,6 +60,7 @@ impl Fitter<'_> {
         // Receivers know their places and their depths as well as f32 does.
         let reach = range.near.abs().max(range.far.abs());
         let margin = rounding_margin(&body.vertices, origin).max(rounding(reach, origin));
+        let still = self.how.stabilise == Stabilise::SnapTexels;
         let mut slices = ArrayVec::<Cut, MAX_VIEWS>::new();
         for (split, pair) in planes.windows(2).enumerate() {
             let (near, far, split) = (pair[0], pair[1], split as u8);
@@ -69,7 +70,7 @@ impl Fitter<'_> {
                     before.depth.far = far;
                     frame.leave_out(Part::Split(split), Why::NoDepth);
                 }
-                Some(before) if !stable && self.joins(&profile, splits, before.depth, pair, &planes) => {
+                Some(before) if !still && self.joins(&profile, splits, before.depth, pair, &planes) => {
                     before.depth.far = far;
                     frame.leave_out(Part::Split(split), Why::MetBy { split: before.split });
                 }

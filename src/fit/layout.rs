@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::fit::depth_range::{rounding, rounding_margin};
-use crate::fit::snap;
+use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
 use crate::frame::ShadowFrame;
@@ -34,6 +34,15 @@ const MOST_ROUNDING: f64 = 0.125;
 /// 0 warps would be given up because something stands far away.
 const MOST_ROUNDING_OF_CASTERS: f64 = 0.5;
 
+/// How windows are laid.
+#[derive(Clone, Copy)]
+pub(crate) struct How {
+    pub(crate) warp: Warp,
+    /// Whether published warps are limited to what pays.
+    pub(crate) guard: bool,
+    pub(crate) stabilise: Stabilise,
+}
+
 /// The window that is laid around a body.
 pub(crate) struct Layout {
     /// The map's extent across the light.
@@ -53,8 +62,19 @@ impl Layout {
 }
 
 impl Fitter<'_> {
+    /// The window of a map around a body; the body is what it is around afterwards.
+    pub(crate) fn lay_out(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
+        match (self.how.stabilise, self.how.warp) {
+            (Stabilise::Off, Warp::Uniform) => self.tight(body),
+            (Stabilise::Off, Warp::Focused) => self.focused(body, frame),
+            (Stabilise::SnapTexels, Warp::Uniform) => self.still(body, Why::AlreadyStill, frame),
+            (Stabilise::Off, warp) => self.warped(body, warp, self.how.guard, frame),
+            (Stabilise::SnapTexels, _) => self.snapped(body, frame),
+        }
+    }
+
     /// The window of nearly least area around a body.
-    pub(crate) fn tight(&self, body: &FocusBody) -> Layout {
+    fn tight(&self, body: &FocusBody) -> Layout {
         let margin = rounding_margin(&body.vertices, self.input.origin);
         let window = Window::steady(LightSpace::fixed(self.travel), Bend::NONE, &body.vertices, margin);
         Layout::uniform(window)
@@ -62,7 +82,7 @@ impl Fitter<'_> {
 
     /// The window of nearly least area around what is in view; around the whole scene where that has hardly larger texels, because
     /// a map that does not follow the camera need not be drawn anew. The body is what the window is around.
-    pub(crate) fn focused(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
+    fn focused(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let tight = self.tight(body);
         let window = &tight.window;
         // Most windows are far smaller than any window around the bounds: no need to fit the scene.
@@ -84,7 +104,7 @@ impl Fitter<'_> {
     }
 
     /// The window of the whole scene, which does not move with the camera.
-    pub(crate) fn still(&self, whole: &FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
+    fn still(&self, whole: &FocusBody, why: Why, frame: &mut ShadowFrame) -> Layout {
         frame.leave_out(Part::Stabilise(self.index), why);
         let window = snap::still(&self.around(whole), self.texels.over_window(), self.input.origin);
         Layout { whole: true, ..Layout::uniform(window) }
@@ -92,7 +112,7 @@ impl Fitter<'_> {
 
     /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller. The body is what the
     /// window is around.
-    pub(crate) fn snapped(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
+    fn snapped(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let Ok(whole) = FocusBody::of_scene(&self.input.scene, self.travel, self.input.origin) else {
             return self.still(body, Why::AlreadyStill, frame);
         };
@@ -113,7 +133,7 @@ impl Fitter<'_> {
 
     /// The window around what is in view, bent by what a warp chooses; a guard limits it to what is predicted to be no worse than
     /// uniform.
-    pub(crate) fn warped(&self, body: &FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
+    fn warped(&self, body: &FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
         let (camera, origin) = (&self.input.camera, self.input.origin);
         let margin = rounding_margin(&body.vertices, origin);
         // Choose an axis and a strength.

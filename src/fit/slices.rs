@@ -4,7 +4,7 @@
 //! - Zhang, Sun, Xu & Lu, *Parallel-split shadow maps for large-scale virtual environments*, 2006.
 
 use crate::fit::cuts::{Cut, Cuts};
-use crate::fit::layout::Layout;
+use crate::fit::snap::Stabilise;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
 use crate::frame::{Footprint, Select, ShadowFrame};
@@ -16,21 +16,12 @@ use crate::split::depth::DepthSplits;
 const NO_RIM: f32 = -1e30;
 
 impl Fitter<'_> {
-    /// Cuts a body in view into slices, lays each out with `lay_out`, and appends their views; `range` are the eye depths to cut, and
-    /// `stable` keeps slices that this frame could do without.
+    /// Cuts a body in view into slices, lays each out, and appends their views.
     ///
     /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share one, and slices
     /// behind a map of the whole scene need none: the report says so.
-    pub(crate) fn slices(
-        &self,
-        body: &FocusBody,
-        range: DepthRange,
-        splits: &DepthSplits,
-        stable: bool,
-        lay_out: impl Fn(&Self, &mut FocusBody, &mut ShadowFrame) -> Layout,
-        frame: &mut ShadowFrame,
-    ) {
-        let Cuts { slices, margin } = self.cuts(body, range, splits, stable, frame);
+    pub(crate) fn slices(&self, body: &FocusBody, range: DepthRange, splits: &DepthSplits, frame: &mut ShadowFrame) {
+        let Cuts { slices, margin } = self.cuts(body, range, splits, frame);
         let mut before = 0.0;
         for (number, cut) in slices.iter().enumerate() {
             // The slice, and the band in which the one before gives way to it.
@@ -44,7 +35,7 @@ impl Fitter<'_> {
             // One map.
             let index = frame.views.len() as u8;
             let fitter = Self { index, ..*self };
-            let layout = lay_out(&fitter, &mut slice, frame);
+            let layout = fitter.lay_out(&mut slice, frame);
             if let Err(why) = fitter.view(&slice, &layout, frame) {
                 frame.leave_out(Part::Split(cut.split), why);
                 continue;
@@ -64,6 +55,12 @@ impl Fitter<'_> {
         self.finish(splits, range, frame);
     }
 
+    /// The eye depths to cut: those of the body; of maps that stand still, the camera's, which do so as well.
+    fn range(&self, body: &FocusBody) -> DepthRange {
+        let still = self.how.stabilise == Stabilise::SnapTexels && body.depth.far.is_finite();
+        if still { body.depth } else { body.seen_depth(&self.input.camera, self.input.origin) }
+    }
+
     /// What a shader has to know to find the map of a slice, which gives way over `band` world units.
     fn domain(&self, splits: &DepthSplits, DepthRange { near, far }: DepthRange, band: f64) -> [f32; 4] {
         let inverse = |width: f64| if width > 0.0 { width.recip() } else { 0.0 };
@@ -75,7 +72,7 @@ impl Fitter<'_> {
     }
 
     /// One view serves everything.
-    pub(crate) fn finish_one(&self, select: Select, frame: &mut ShadowFrame) {
+    pub(crate) fn finish_one(select: Select, frame: &mut ShadowFrame) {
         let Some(view) = frame.views.first() else { return };
         frame.predicted = view.texel.pixels;
         if select == Select::Finest {

@@ -12,6 +12,17 @@ use crate::scene::DepthRange;
 use crate::warp::bend::Bend;
 use crate::warp::window::Window;
 
+/// Whether texels keep their place in the world while the camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stabilise {
+    /// The tightest fit; edges may crawl when the camera moves.
+    #[default]
+    Off,
+    /// A window of constant size that moves by whole texels: edges never crawl, for a larger window.
+    SnapTexels,
+}
+
 /// Steps per doubling in which a snapped window may grow. More steps fit tighter but change the texel size, and so let
 /// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
 const STEPS_PER_OCTAVE: f64 = 16.0;

@@ -6,7 +6,7 @@ use crate::aliasing::extremes;
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding, rounding_margin};
-use crate::fit::layout::Layout;
+use crate::fit::layout::{How, Layout};
 use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
 use crate::math::space::{Clip, Map, Render};
@@ -25,6 +25,8 @@ pub(crate) struct Fitter<'a> {
     pub(crate) texels: Texels,
     /// How receivers are kept from shadowing themselves.
     pub(crate) bias: Bias,
+    /// How windows are laid.
+    pub(crate) how: How,
     /// Number of the view.
     pub(crate) index: u8,
 }

@@ -11,9 +11,10 @@ use super::report::Row;
 use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
 use crate::error::FitError;
+use crate::fit::snap::Stabilise;
 use crate::frame::{ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
-use crate::remix::{Encoding, Remix, Stabilise};
+use crate::remix::{Encoding, Remix};
 use crate::technique::ShadowTechnique;
 use crate::warp::Warp;
 

@@ -127,6 +127,7 @@ fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> V
             let half = 0.15 + 0.1 * index as f32;
             let [u, v] = [dice.single(0.4, 0.6), dice.single(0.4, 0.6)];
             view.rect = [u - half, v - half, u + half, v + half];
+            view.domain[2] = dice.single(0.0, 2.0) * view.bias[3];
             view.domain[3] = 1.0 / dice.single(0.05, 0.2);
         }
     }
