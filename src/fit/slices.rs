@@ -20,7 +20,8 @@ impl Fitter<'_> {
     ///
     /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share one, and slices
     /// behind a map of the whole scene need none: the report says so.
-    pub(crate) fn slices(&self, body: &FocusBody, range: DepthRange, splits: &DepthSplits, frame: &mut ShadowFrame) {
+    pub(crate) fn slices(&self, body: &FocusBody, splits: &DepthSplits, frame: &mut ShadowFrame) {
+        let range = self.range(body);
         let Cuts { slices, margin } = self.cuts(body, range, splits, frame);
         let mut before = 0.0;
         for (number, cut) in slices.iter().enumerate() {
