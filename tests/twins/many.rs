@@ -124,7 +124,7 @@ fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> V
             view.domain = [near, far, far - band, if key.blend { 1.0 / band } else { 0.0 }];
         }
         Select::Finest => {
-            let half = 0.15 + 0.1 * index as f32;
+            let half = 0.12 + 0.12 * index as f32;
             let [u, v] = [dice.single(0.4, 0.6), dice.single(0.4, 0.6)];
             view.rect = [u - half, v - half, u + half, v + half];
             view.domain[2] = dice.single(0.0, 2.0) * view.bias[3];
