@@ -124,10 +124,10 @@ fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> V
             view.domain = [near, far, far - band, if key.blend { 1.0 / band } else { 0.0 }];
         }
         Select::Finest => {
-            let half = 0.12 + 0.12 * index as f32;
-            let [u, v] = [dice.single(0.4, 0.6), dice.single(0.4, 0.6)];
+            let half = [0.12, 0.22, 0.31, 0.44][index.min(3)];
+            let [u, v] = [dice.single(0.47, 0.53), dice.single(0.47, 0.53)];
             view.rect = [u - half, v - half, u + half, v + half];
-            view.domain[2] = dice.single(0.0, 2.0) * view.bias[3];
+            view.domain[2] = dice.single(0.0, 1.0) * view.bias[3];
             view.domain[3] = 1.0 / dice.single(0.05, 0.2);
         }
     }
