@@ -1,7 +1,8 @@
 //! Nanoseconds per fit, for each technique and kind of scene. `cargo bench --bench fit`.
 
 use antumbra::{
-    Aabb, Camera, FitInput, Light, MapBudget, Object, Remix, Scene, ShadowTechnique, Stabilise, techniques,
+    Aabb, Camera, DepthSplits, FitInput, Focus, Light, MapBudget, Object, Remix, Scene, Scheme, ShadowTechnique, Split,
+    Stabilise, Warp, techniques,
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
@@ -13,7 +14,7 @@ fn inputs(objects: &[Object]) -> [(&'static str, FitInput<'_>); 3] {
         Camera::perspective(Camera::look_at(eye, target, DVec3::Y), 45_f64.to_radians(), 4.0 / 3.0, 1.0, far)
     };
     let sun = Light::Directional { travel: DVec3::new(0.4, -0.8, 0.3).normalize() };
-    let map = MapBudget::one(2048);
+    let map = MapBudget { side: 2048, layers: 4, views: 4 };
     let origin = DVec3::ZERO;
     let forest = Aabb::new(DVec3::new(-20.0, 0.0, -20.0), DVec3::new(20.0, 9.0, 20.0));
     let city = Aabb::new(DVec3::new(-1400.0, 0.0, -1400.0), DVec3::new(1400.0, 180.0, 1400.0));
@@ -41,11 +42,27 @@ fn fit(criterion: &mut Criterion) {
                 let remix = Remix { stabilise, ..technique() };
                 // A row that fits nothing would time nothing.
                 let frame = remix.fit(&input).expect("legal input");
-                assert_eq!(frame.views.len(), 1, "{name} {scene}: {:?}", frame.left_out);
+                let maps = usize::from(remix.wgsl_key().maps);
+                assert!((1..=maps).contains(&frame.views.len()), "{name} {scene}: {:?}", frame.left_out);
                 group.bench_function(BenchmarkId::new(format!("{name}{suffix}"), scene), |bencher| {
                     bencher.iter(|| remix.fit(black_box(&input)));
                 });
             }
+        }
+    }
+    for (scene, input) in inputs(&objects) {
+        for (name, warp, stabilise) in [
+            ("trapezoid", Warp::Trapezoidal { focus: Focus::default() }, Stabilise::Off),
+            ("focused", Warp::Focused, Stabilise::Off),
+            ("sphere-snapped", Warp::Focused, Stabilise::SnapTexels),
+        ] {
+            let scheme = Scheme::Practical { lambda: 0.5, offset: 0.0 };
+            let split = Split::Depth(DepthSplits { maps: 4, scheme, ..DepthSplits::DEFAULT });
+            let remix = Remix { split, warp, stabilise, ..Remix::default() };
+            assert!(remix.fit(&input).is_ok_and(|frame| frame.views.len() > 1));
+            group.bench_function(BenchmarkId::new(format!("4-splits-{name}"), scene), |bencher| {
+                bencher.iter(|| remix.fit(black_box(&input)));
+            });
         }
     }
     group.finish();

@@ -250,3 +250,126 @@ fn snapped_maps_do_not_shimmer() {
     println!("largest part of a texel that maps move by: {worst:.1e} of {compared}");
     assert!(compared == 299 * 4 * 20 && worst <= 1e-3, "{worst}");
 }
+
+/// Scenes that do not need splits do not get them: how many views there are, and why no more.
+mod what_is_left_out {
+    use super::*;
+    use antumbra::{Object, Part, Why, techniques};
+
+    fn shot(scene: Scene, camera: Camera, travel: DVec3, side: u32) -> ShadowFrame {
+        let map = MapBudget { side, layers: 4, views: 4 };
+        let light = Light::Directional { travel };
+        let input = FitInput { camera, light, scene, map, origin: DVec3::ZERO, previous: None };
+        let frame = techniques::cascades().fit(&input).expect("legal");
+        let reasons: Vec<String> = frame.left_out.iter().map(ToString::to_string).collect();
+        println!(
+            "{} views, {:.3} pixels a texel at most; {}",
+            frame.views.len(),
+            frame.predicted.max,
+            reasons.join("; ")
+        );
+        // Uniforms that are not in use read lit.
+        for unused in &frame.uniforms.views[frame.views.len()..] {
+            assert_eq!(*unused, antumbra::ViewUniforms::LIT);
+        }
+        assert_eq!(frame.uniforms.counts[0] as usize, frame.views.len());
+        frame
+    }
+
+    fn splits_left_out(frame: &ShadowFrame) -> Vec<Why> {
+        frame.left_out.iter().filter(|cut| matches!(cut.part, Part::Split(_))).map(|cut| cut.why).collect()
+    }
+
+    fn looking_along_z() -> Camera {
+        let mut camera = Camera::perspective(DMat4::from_translation(DVec3::new(0.0, 1.7, 0.0)), 1.0, 1.5, 0.1, 500.0);
+        camera.viewport = UVec2::new(800, 600);
+        camera
+    }
+
+    /// Light that falls in through the end of a corridor: all of it is as wide as its section, which the view takes in as a whole from
+    /// some way off. From inside, the view is narrower than the section at first, and maps of that are finer.
+    #[test]
+    fn a_corridor_lit_along_it() {
+        let corridor = Aabb::new(DVec3::new(-2.0, 0.0, -60.0), DVec3::new(2.0, 3.0, 0.0));
+        assert_eq!(shot(Scene::within(corridor), looking_along_z(), DVec3::Z, 1024).views.len(), 3);
+        let mut outside = looking_along_z();
+        outside.world_from_view.w_axis.z = 6.0;
+        let frame = shot(Scene::within(corridor), outside, DVec3::Z, 1024);
+        assert_eq!(frame.views.len(), 1);
+        assert!(splits_left_out(&frame).iter().all(|why| matches!(why, Why::MetBy { split: 0 })));
+        assert_eq!(splits_left_out(&frame).len(), 3);
+        // Lit from above, it is as long as it is.
+        assert_eq!(shot(Scene::within(corridor), looking_along_z(), sun(), 1024).views.len(), 4);
+    }
+
+    #[test]
+    fn a_single_small_object() {
+        let object = Aabb::new(DVec3::new(-0.5, 1.0, -31.0), DVec3::new(0.5, 2.0, -30.0));
+        let frame = shot(Scene::within(object), looking_along_z(), sun(), 1024);
+        assert_eq!(frame.views.len(), 1);
+        assert_eq!(splits_left_out(&frame).len(), 3);
+        // A map of too few texels gets help.
+        assert!(shot(Scene::within(object), looking_along_z(), sun(), 32).views.len() > 1);
+    }
+
+    #[test]
+    fn an_empty_sky() {
+        let ground = Aabb::new(DVec3::new(-100.0, -10.0, -100.0), DVec3::new(100.0, 0.0, 100.0));
+        let up = DMat4::from_rotation_translation(DQuat::from_rotation_x(1.2), DVec3::Y * 20.0);
+        let frame = shot(Scene::within(ground), Camera::perspective(up, 1.0, 1.5, 0.1, 500.0), sun(), 1024);
+        assert!(frame.views.is_empty());
+        assert!(matches!(frame.left_out[0].why, Why::NoReceiversInView { .. }));
+    }
+
+    /// What is far away begins far away: no map is spent on the air before it.
+    #[test]
+    fn receivers_in_the_distance() {
+        let hill = Aabb::new(DVec3::new(-300.0, 0.0, -420.0), DVec3::new(300.0, 60.0, -400.0));
+        let frame = shot(Scene::within(hill), looking_along_z(), DVec3::new(0.2, -0.5, -0.8).normalize(), 1024);
+        assert!(frame.views.len() < 4, "{:?}", frame.left_out);
+        assert!(frame.uniforms.views[0].domain[0] >= 399.0 || frame.views.len() == 1);
+    }
+
+    /// Slices in which nothing casts have no map; neighbours do not reach into them.
+    #[test]
+    fn slices_without_casters() {
+        let ground = Aabb::new(DVec3::new(-200.0, 0.0, -400.0), DVec3::new(200.0, 0.1, 0.0));
+        let hut =
+            |z: f64| Object { bounds: Aabb::new(DVec3::new(-3.0, 0.0, z - 6.0), DVec3::new(3.0, 4.0, z)), casts: true };
+        let objects = [hut(-10.0), hut(-380.0)];
+        let casters = objects[0].bounds.union(objects[1].bounds);
+        let scene = Scene { casters, receivers: ground, objects: &objects, ..Scene::within(ground) };
+        let splits = DepthSplits {
+            scheme: Scheme::Uniform,
+            select: Select::Depth,
+            blend: 0.3,
+            enough: 0.0,
+            ..DepthSplits::DEFAULT
+        };
+        let remix = Remix { split: Split::Depth(splits), warp: Warp::Focused, ..Remix::default() };
+        let light = Light::Directional { travel: DVec3::new(0.1, -1.0, 0.0).normalize() };
+        let map = MapBudget { side: 1024, layers: 4, views: 4 };
+        let input = FitInput { camera: looking_along_z(), light, scene, map, origin: DVec3::ZERO, previous: None };
+        let frame = remix.fit(&input).unwrap();
+        println!("{:?}", frame.left_out);
+        assert_eq!(frame.views.len(), 2);
+        let bare = splits_left_out(&frame);
+        assert_eq!(bare.iter().filter(|why| matches!(why, Why::NothingCastsHere)).count(), 2, "{bare:?}");
+        assert_eq!(frame.uniforms.views[0].domain[3], 0.0, "no band into a map that does not hold it");
+    }
+
+    #[test]
+    fn budgets_are_kept() {
+        let world = Aabb::new(DVec3::splat(-500.0), DVec3::splat(500.0));
+        for (views, layers, expected) in [(4, 4, 4), (2, 4, 2), (4, 1, 1), (8, 8, 4)] {
+            let map = MapBudget { side: 1024, layers, views };
+            let light = Light::Directional { travel: sun() };
+            let scene = Scene::within(world);
+            let input = FitInput { camera: looking_along_z(), light, scene, map, origin: DVec3::ZERO, previous: None };
+            let frame = techniques::cascades().fit(&input).unwrap();
+            assert_eq!(frame.views.len(), expected);
+            let without = frame.left_out.iter().filter(|cut| cut.why == Why::NoMapLeft).count();
+            assert_eq!(without, 4 - expected);
+        }
+    }
+}

@@ -43,7 +43,7 @@ fn fit_allocates_nothing() {
                     let remix = Remix { stabilise, guard, ..technique() };
                     let scene = Scene { visible_points, ..scene };
                     let light = Light::Directional { travel };
-                    let map = MapBudget::one(1024);
+                    let map = MapBudget { side: 1024, layers: 8, views: 8 };
                     let input = FitInput { camera, light, scene, map, origin: DVec3::ZERO, previous: None };
                     let views = remix.fit(&input).map_or(9, |frame| frame.views.len());
                     KEPT.fetch_add(views, Ordering::Relaxed);

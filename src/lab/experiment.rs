@@ -12,9 +12,10 @@ use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
 use crate::error::FitError;
 use crate::fit::snap::Stabilise;
-use crate::frame::{ShadowFrame, WgslKey};
+use crate::frame::{Select, ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use crate::remix::{Encoding, Remix};
+use crate::split::{Scheme, Split};
 use crate::technique::ShadowTechnique;
 use crate::warp::Warp;
 
@@ -277,12 +278,22 @@ pub fn stage_names(remix: &Remix) -> [String; 3] {
         Warp::Fixed { strength } => format!("strength {strength}"),
     };
     let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };
-    [split_name(remix).to_owned(), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
+    [split_name(remix), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
 }
 
 /// Name of a remix's split.
-fn split_name(_remix: &Remix) -> &'static str {
-    "one map"
+fn split_name(remix: &Remix) -> String {
+    let Split::Depth(splits) = remix.split else { return "one map".to_owned() };
+    let scheme = match splits.scheme {
+        Scheme::Uniform => "uniform".to_owned(),
+        Scheme::Logarithmic => "logarithmic".to_owned(),
+        Scheme::Practical { lambda, .. } => format!("practical {lambda}"),
+        Scheme::Manual(_) => "manual".to_owned(),
+        Scheme::EqualError => "equal error".to_owned(),
+    };
+    let select = if splits.select == Select::Finest { ", finest" } else { "" };
+    let blend = if splits.blend > 0.0 { ", blended" } else { "" };
+    format!("{} maps, {scheme}{select}{blend}", splits.maps)
 }
 
 /// Texels of a frame's views.
