@@ -1,11 +1,17 @@
 //! What splits buy: wrong pixels of parallel splits over λ, and of this crate's cascades, with and without knowledge of what is
-//! seen. `cargo bench --bench split_sweep`, or `-- NAME` for cases whose name contains that; writes `target/split_sweep/sweep.csv`.
+//! seen. `cargo bench --bench split_sweep` writes `docs/SPLITS.md` and `target/split_sweep/sweep.csv`; with `-- NAME`, cases whose name
+//! contains that alone, and no page.
+
+mod page;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use antumbra::lab::cli;
 use antumbra::lab::comparison::Assignment;
 use antumbra::lab::experiment::{Backend, BackendChoice, Studio};
+use antumbra::lab::files::write_whole;
 use antumbra::lab::subject::{Knowledge, Setting};
 use antumbra::lab::truth::TruthCache;
 use antumbra::{DepthSplits, Remix, Scheme, Select, Split, Warp};
@@ -16,41 +22,39 @@ const SIZES: [u32; 2] = [512, 1024];
 /// Maps of every technique.
 const MAPS: u8 = 4;
 
-fn split(scheme: Scheme, select: Select, warp: Warp) -> Remix {
-    Remix {
-        split: Split::Depth(DepthSplits { maps: MAPS, scheme, select, ..DepthSplits::DEFAULT }),
-        warp,
-        ..Remix::default()
-    }
+/// λ of the parallel splits; the first one is the yardstick.
+const LAMBDAS: [f32; 5] = [0.5, 0.3, 0.65, 0.8, 1.0];
+
+/// One picture.
+#[derive(Clone, Debug)]
+struct Record {
+    set: &'static str,
+    case: String,
+    size: u32,
+    technique: String,
+    views: usize,
+    wrong: f64,
 }
 
-/// By name, with what they are told.
-fn techniques() -> Vec<(String, Remix, Knowledge)> {
+/// By name.
+fn techniques() -> Vec<(String, Remix)> {
+    let split = |scheme, select, warp, enough| Remix {
+        split: Split::Depth(DepthSplits { maps: MAPS, scheme, select, enough, ..DepthSplits::DEFAULT }),
+        warp,
+        ..Remix::default()
+    };
     let practical = |lambda| Scheme::Practical { lambda, offset: 0.0 };
-    let mut all = vec![];
-    for lambda in [0.5, 0.3, 0.65, 0.8, 1.0] {
-        let mut remix = split(practical(lambda), Select::Depth, Warp::Focused);
-        if let Split::Depth(splits) = &mut remix.split {
-            splits.enough = 0.0;
-        }
-        all.push((format!("pssm {lambda}"), remix, Knowledge::Bounds));
-    }
-    for (name, knowledge) in [("", Knowledge::Bounds), (" points", Knowledge::Points), (" depths", Knowledge::Depths)] {
-        all.push((format!("pssm .5 finest{name}"), split(practical(0.5), Select::Finest, Warp::Focused), knowledge));
-        all.push((
-            format!("pssm .8 finest warped{name}"),
-            split(practical(0.8), Select::Finest, Warp::LeastError),
-            knowledge,
-        ));
-        all.push((format!("equal depth{name}"), split(Scheme::EqualError, Select::Depth, Warp::Focused), knowledge));
-        all.push((format!("equal finest{name}"), split(Scheme::EqualError, Select::Finest, Warp::Focused), knowledge));
-        all.push((
-            format!("equal finest warped{name}"),
-            split(Scheme::EqualError, Select::Finest, Warp::LeastError),
-            knowledge,
-        ));
-    }
-    all
+    let enough = DepthSplits::DEFAULT.enough;
+    let plain = LAMBDAS
+        .map(|lambda| (format!("λ {lambda}, by depth"), split(practical(lambda), Select::Depth, Warp::Focused, 0.0)));
+    let ours = [
+        ("λ 0.5, finest", split(practical(0.5), Select::Finest, Warp::Focused, 0.0)),
+        ("λ 0.8, finest, least-error", split(practical(0.8), Select::Finest, Warp::LeastError, 0.0)),
+        ("equal error, by depth", split(Scheme::EqualError, Select::Depth, Warp::Focused, enough)),
+        ("equal error, finest", split(Scheme::EqualError, Select::Finest, Warp::Focused, enough)),
+        ("cascades", split(Scheme::EqualError, Select::Finest, Warp::LeastError, enough)),
+    ];
+    plain.into_iter().chain(ours.map(|(name, remix)| (name.to_owned(), remix))).collect()
 }
 
 fn assignments(only: Option<&str>) -> Result<Vec<(&'static str, Assignment)>, String> {
@@ -74,44 +78,65 @@ fn assignments(only: Option<&str>) -> Result<Vec<(&'static str, Assignment)>, St
     Ok(assignments)
 }
 
-fn main() -> Result<(), String> {
-    let only = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
-    let (mut backend, why) = Backend::open(BackendChoice::Cpu)?;
-    if let Some(why) = why {
-        println!("{why}");
-    }
-    let mut text = "set,scene,case,size,technique,views,predicted,wrong\n".to_owned();
-    for (set, assignment) in assignments(only.as_deref())? {
-        for case in &assignment.cases {
-            let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
-            for knowledge in [Knowledge::Bounds, Knowledge::Points, Knowledge::Depths] {
-                let studio = Studio::new(&mut backend, &assignment.subject, Setting::of(case))
-                    .map_err(|error| error.to_string())?;
-                let mut studio = studio.knowing(knowledge);
-                for (name, remix, _) in techniques().into_iter().filter(|(_, _, known)| *known == knowledge) {
-                    for side in SIZES {
-                        let shot = studio.shoot(&remix, side, 1).map_err(|error| error.to_string())?;
-                        let scores = shot.scores(&truth).map_err(|error| error.to_string())?;
-                        let views = shot.frame.views.len();
-                        let predicted = shot.frame.predicted.error;
-                        let wrong = scores.wrong_center;
-                        println!(
-                            "{set} {} {} {side} {name}: {views} maps, {:.3} %",
-                            assignment.scene,
-                            case.name,
-                            100.0 * wrong
-                        );
-                        let _ = writeln!(
-                            text,
-                            "{set},{},{},{side},{name},{views},{predicted},{wrong}",
-                            assignment.scene, case.name
-                        );
-                    }
+/// Photographs every case with every technique, told as much as `knowledge` says.
+fn sweep(
+    backend: &mut Backend,
+    set: &'static str,
+    assignment: &Assignment,
+    records: &mut Vec<Record>,
+) -> Result<(), String> {
+    for case in &assignment.cases {
+        let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
+        for (suffix, knowledge) in page::KNOWN {
+            let studio =
+                Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
+            let mut studio = studio.knowing(knowledge);
+            for (name, remix) in techniques() {
+                // The yardstick and its kin know bounds alone.
+                if knowledge != Knowledge::Bounds && name.ends_with("by depth") && name.starts_with('λ') {
+                    continue;
+                }
+                for size in SIZES {
+                    let shot = studio.shoot(&remix, size, 1).map_err(|error| error.to_string())?;
+                    let wrong = shot.scores(&truth).map_err(|error| error.to_string())?.wrong_center;
+                    let case =
+                        if set == "shared" { case.name.clone() } else { format!("{}/{}", assignment.scene, case.name) };
+                    let (technique, views) = (format!("{name}{suffix}"), shot.frame.views.len());
+                    println!("{case} {size} {technique}: {views} maps, {:.3} %", 100.0 * wrong);
+                    records.push(Record { set, case, size, technique, views, wrong });
                 }
             }
         }
     }
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("../split_sweep");
-    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-    std::fs::write(folder.join("sweep.csv"), text).map_err(|error| error.to_string())
+    Ok(())
+}
+
+fn main() -> Result<(), String> {
+    let start = Instant::now();
+    let only = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
+    let (mut backend, _) = Backend::open(BackendChoice::Cpu)?;
+    let mut records = Vec::new();
+    for (set, assignment) in assignments(only.as_deref())? {
+        sweep(&mut backend, set, &assignment, &mut records)?;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut text = "set,case,size,technique,views,wrong\n".to_owned();
+    for Record { set, case, size, technique, views, wrong } in &records {
+        let _ = writeln!(text, "{set},{case},{size},\"{technique}\",{views},{wrong}");
+    }
+    let folder = root.join("target/split_sweep");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    write_whole(&folder.join("sweep.csv"), text.as_bytes())?;
+    if only.is_some() {
+        return Ok(());
+    }
+    let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
+    let meta = [
+        ("command", format!("{scenes}cargo bench --bench split_sweep")),
+        ("commit", cli::commit()),
+        ("renderer", backend.adapter()),
+        ("date", cli::now()),
+        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
+    ];
+    write_whole(&root.join("docs/SPLITS.md"), page::page(&meta, &records).as_bytes())
 }

@@ -98,6 +98,21 @@ impl DepthSplits {
         Self { maps: read as u8 + 1, scheme: Scheme::Manual(depths), ..Self::default() }
     }
 
+    /// The first map ends at eye depth `first`, the last one at `far`, and each map between them is as many times as deep as the one
+    /// before: `first (far/first)^(i/(maps − 1))`. Numbers that are not 0 < first ≤ far give planes that `fit` refuses.
+    ///
+    /// Bevy's cascades are `exponential(4, 10.0, 150.0)` with `select: Select::Depth`, `blend: 0.2` (of a cascade's length here, of its far end
+    /// there), `enough: 0.0`, [`Stabilise::SnapTexels`](crate::Stabilise::SnapTexels), and a `visible_depth` of 0.1 to 150.
+    #[must_use]
+    pub fn exponential(maps: u8, first: f32, far: f32) -> Self {
+        let between = maps.clamp(1, MAX_VIEWS as u8) - 1;
+        let mut depths = [f32::INFINITY; MAX_VIEWS - 1];
+        for (index, depth) in depths.iter_mut().enumerate().take(usize::from(between)) {
+            *depth = first * (far / first).powf(index as f32 / f32::from(between));
+        }
+        Self { maps, scheme: Scheme::Manual(depths), ..Self::default() }
+    }
+
     /// Checks its numbers.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
         let within = |field, value: f32, low: f64, high: f64, legal| {
@@ -233,6 +248,19 @@ mod tests {
             prop_assert!(planes.is_sorted() && planes.iter().all(|plane| plane.is_finite()), "{:?}", planes);
             prop_assert_eq!((planes[0], planes[usize::from(maps)]), (near, far));
         }
+    }
+
+    /// Bevy 0.19: `calculate_cascade_bounds` of 4 cascades, first bound 10, maximum distance 150.
+    #[test]
+    fn exponential_planes() {
+        let splits = DepthSplits::exponential(4, 10.0, 150.0);
+        let planes = found(splits.scheme, 4, 0.1, 150.0);
+        for (found, expected) in planes.iter().zip([0.1, 10.0, 24.662_121, 60.822_02, 150.0]) {
+            assert!((found - expected).abs() < 1e-5 * expected, "{planes:?}");
+        }
+        assert!(splits.validate().is_ok());
+        assert!(DepthSplits::exponential(4, -1.0, 150.0).validate().is_err());
+        assert!(DepthSplits::exponential(1, 10.0, 150.0).validate().is_ok());
     }
 
     #[test]

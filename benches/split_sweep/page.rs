@@ -1,0 +1,110 @@
+//! The page of what splits buy.
+
+use std::fmt::Write as _;
+
+use antumbra::lab::statistics::geometric_mean;
+use antumbra::lab::subject::Knowledge;
+
+use crate::Record;
+
+/// What techniques are told, by the suffix of their names.
+pub(crate) const KNOWN: [(&str, Knowledge); 3] =
+    [("", Knowledge::Bounds), (" (points)", Knowledge::Points), (" (depths)", Knowledge::Depths)];
+
+/// The yardstick.
+const YARDSTICK: &str = "λ 0.5, by depth";
+
+/// Yardsticks with fewer wrong pixels than this share leave nothing to gain: 48 pixels of 800 × 600.
+const LEAST_WRONG: f64 = 1e-4;
+
+/// Half a pixel of 800 × 600: stands for none where a ratio is taken.
+const HALF_A_PIXEL: f64 = 1e-6;
+
+/// Columns of the table of cases.
+const SHOWN: [&str; 5] = [YARDSTICK, "λ 0.8, by depth", "cascades", "cascades (points)", "cascades (depths)"];
+
+const HEAD: &str = "# What splits buy
+
+This page is written by the command below; every number on it comes from that run.
+";
+
+const TABLE: &str = "
+Four maps each, hardware 2×2 filter. Wrong pixels are those more than half off the centre truth; *÷ λ ½* is their number over that of
+parallel splits with λ = ½, found by depth, without a warp (`pssm` with four maps), geometric mean; *worst* and *where*: the largest such
+ratio; *maps*: how many there were in the mean. Without a suffix a technique knows the scene's bounds, its objects' bounds and the shadow
+distance; *points*: a few hundred visible positions as well; *depths*: those and the range of the depth buffer. *Finest*: receivers are
+looked up in the first map that holds them. *Cascades*: equal error, finest, least-error warp.
+";
+
+pub(crate) fn page(meta: &[(&str, String)], records: &[Record]) -> String {
+    let mut text = HEAD.to_owned();
+    text.push('\n');
+    for (name, value) in meta {
+        let _ = writeln!(text, "- {name}: `{value}`");
+    }
+    text.push_str(TABLE);
+    for (set, name) in [("shared", "case files"), ("built-in", "built-in scenes")] {
+        techniques(&mut text, name, &records.iter().filter(|record| record.set == set).collect::<Vec<_>>());
+    }
+    cases(&mut text, records);
+    text
+}
+
+fn of<'a>(records: &[&'a Record], like: &Record, technique: &str) -> Option<&'a Record> {
+    let same =
+        |record: &&&Record| record.case == like.case && record.size == like.size && record.technique == technique;
+    records.iter().find(same).copied()
+}
+
+/// A table of techniques over the pictures of a set.
+fn techniques(text: &mut String, name: &str, records: &[&Record]) {
+    let yardsticks: Vec<&&Record> =
+        records.iter().filter(|record| record.technique == YARDSTICK && record.wrong >= LEAST_WRONG).collect();
+    if yardsticks.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "\n| {name} ({}) | ÷ λ ½ | worst | where | above 1.10 | maps |\n|---|--:|--:|---|--:|--:|",
+        yardsticks.len()
+    );
+    let mut names: Vec<&str> = Vec::new();
+    for record in records {
+        if !names.contains(&record.technique.as_str()) {
+            names.push(&record.technique);
+        }
+    }
+    for technique in names {
+        let pairs: Vec<(&Record, f64)> = yardsticks
+            .iter()
+            .filter_map(|yardstick| {
+                let record = of(records, yardstick, technique)?;
+                Some((record, record.wrong.max(HALF_A_PIXEL) / yardstick.wrong))
+            })
+            .collect();
+        let ratios: Vec<f64> = pairs.iter().map(|(_, ratio)| *ratio).collect();
+        let Some((worst, ratio)) = pairs.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        let maps = pairs.iter().map(|(record, _)| record.views as f64).sum::<f64>() / pairs.len() as f64;
+        let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();
+        let _ = writeln!(
+            text,
+            "| {technique} | {:.3} | {ratio:.2} | {} {} | {above} | {maps:.1} |",
+            geometric_mean(&ratios),
+            worst.case,
+            worst.size
+        );
+    }
+}
+
+/// Every picture of the techniques that matter.
+fn cases(text: &mut String, records: &[Record]) {
+    let _ = writeln!(text, "\n## Cases\n\nWrong pixels, %.\n\n| case | size | {} |", SHOWN.join(" | "));
+    let _ = writeln!(text, "|---|--:|{}", "--:|".repeat(SHOWN.len()));
+    let all: Vec<&Record> = records.iter().collect();
+    for yardstick in all.iter().filter(|record| record.technique == YARDSTICK) {
+        let cells = SHOWN.map(|technique| {
+            of(&all, yardstick, technique).map_or("–".to_owned(), |record| format!("{:.3}", 100.0 * record.wrong))
+        });
+        let _ = writeln!(text, "| {} | {} | {} |", yardstick.case, yardstick.size, cells.join(" | "));
+    }
+}
