@@ -9,16 +9,16 @@
 //! # Simplifications
 //! - One light at a time; engines call [`ShadowTechnique::fit`] once per frame and light.
 //! - The scene is known by bounds, not by triangles. Bounds are promises.
-//! - This version serves directional light with one map: uniform ([`techniques::ssm`], [`techniques::fsm`]) or warped
+//! - This version serves directional light with one map, uniform ([`techniques::ssm`], [`techniques::fsm`]) or warped
 //!   ([`techniques::psm`], [`techniques::tsm`], [`techniques::lispsm`], [`techniques::minimax`],
-//!   [`techniques::least_error`]).
+//!   [`techniques::least_error`]), or with several, split by depth ([`techniques::pssm`], [`techniques::cascades`]).
 //!
 //! # Not here
 //! A renderer, a scene graph, a device. The core never names a GPU; with feature `wgpu` the module `gpu` brings
 //! textures, bind groups and passes as middleware, and still owns no device, submits nothing and polls nothing.
 //!
 //! # One frame
-//! Camera → focus body → warp → window → ray coordinates → clip space → view → uniforms → shader, in one direction.
+//! Camera → focus body → slices → warp → window → ray coordinates → clip space → view → uniforms → shader, in one direction.
 //!
 //! ```
 //! use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Scene, ShadowTechnique, techniques, wgsl};
