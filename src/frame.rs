@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 
+use crate::content::{Content, Place};
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
 
@@ -184,6 +185,11 @@ pub struct ShadowView {
     pub warp_strength: f32,
     /// Eye depths of the receivers it serves, world units: nearest, farthest.
     pub domain: [f32; 2],
+    /// What has to be drawn of it if casters have not moved since `FitInput::previous`. Snapped maps of still scenes
+    /// scroll, or stay.
+    pub content: Content,
+    /// Where its texels are in the world.
+    pub(crate) place: Place,
 }
 
 /// Size of a view's texels.

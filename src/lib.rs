@@ -69,6 +69,7 @@
 
 pub mod aliasing;
 mod camera;
+mod content;
 pub mod encoding;
 mod error;
 mod fit;
@@ -94,6 +95,7 @@ pub mod wgsl;
 pub mod lab;
 
 pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
+pub use content::Content;
 pub use error::FitError;
 pub use fit::bias::Bias;
 pub use fit::snap::Stabilise;

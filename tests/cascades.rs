@@ -3,8 +3,8 @@
 
 use antumbra::split::depth::planes;
 use antumbra::{
-    Aabb, Camera, ClipDepth, DepthSplits, FitInput, Light, MapBudget, Projection, Remix, Scene, Scheme, Select,
-    ShadowFrame, ShadowTechnique, Split, Stabilise, Warp,
+    Aabb, Camera, ClipDepth, Content, DepthSplits, FitInput, Light, MapBudget, Projection, Remix, Scene, Scheme,
+    Select, ShadowFrame, ShadowTechnique, Split, Stabilise, Warp,
 };
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 
@@ -249,6 +249,59 @@ fn snapped_maps_do_not_shimmer() {
     }
     println!("largest part of a texel that maps move by: {worst:.1e} of {compared}");
     assert!(compared == 299 * 4 * 20 && worst <= 1e-3, "{worst}");
+}
+
+/// What an engine that keeps maps is told along a walk: after the first frame nothing is drawn as a whole again, and what scrolls does so
+/// by as many texels as points of the world move.
+#[test]
+fn snapped_maps_scroll_or_stay() {
+    let remix = cascades();
+    let point = DVec3::new(2.0, 1.0, -9.0);
+    let mut last: Option<(ShadowFrame, DVec3)> = None;
+    let (mut unchanged, mut scrolled) = (0, 0);
+    for step in 0..200 {
+        // Every second frame stands still.
+        let time = f64::from(step / 2) / 30.0;
+        let eye = DVec3::new(1.4 * time, 1.7, 5.0 - 0.5 * time);
+        let turn = DQuat::from_rotation_y(0.5 * time);
+        let camera = Camera::perspective(DMat4::from_rotation_translation(turn, eye), 1.0, 1.5, 0.1, 100.0);
+        let scene = Scene::within(Aabb::new(DVec3::new(-150.0, 0.0, -150.0), DVec3::new(150.0, 20.0, 150.0)));
+        let map = MapBudget { side: 1024, layers: 4, views: 4 };
+        let light = Light::Directional { travel: sun() };
+        let previous = last.as_ref().map(|(frame, _)| frame);
+        let frame = remix.fit(&FitInput { camera, light, scene, map, origin: eye, previous }).unwrap();
+        let texel = |frame: &ShadowFrame, view: usize, origin: DVec3| {
+            let at = clip(frame, view, point, origin).truncate() * 0.5 * f64::from(frame.views[view].viewport.z);
+            DVec2::new(at.x, -at.y)
+        };
+        for (index, view) in frame.views.iter().enumerate() {
+            let Some((before, before_eye)) = &last else {
+                assert_eq!(view.content, Content::Redraw);
+                continue;
+            };
+            let moved = texel(&frame, index, eye) - texel(before, index, *before_eye);
+            match view.content {
+                Content::Redraw => panic!("view {index} of step {step} is drawn again"),
+                Content::Unchanged => unchanged += 1,
+                Content::Scrolled { texels } => {
+                    scrolled += 1;
+                    assert!((moved + texels.as_dvec2()).abs().max_element() < 0.05, "{moved} and {texels}");
+                }
+            }
+        }
+        last = Some((frame, eye));
+    }
+    println!("{unchanged} unchanged, {scrolled} scrolled");
+    assert!(unchanged > 100 && scrolled > 100);
+    // Tight maps have no texels to keep.
+    let (frame, eye) = last.unwrap();
+    let camera = camera(0.1, 100.0);
+    let scene = Scene::within(Aabb::new(DVec3::splat(-150.0), DVec3::splat(150.0)));
+    let map = MapBudget { side: 1024, layers: 4, views: 4 };
+    let light = Light::Directional { travel: sun() };
+    let input = FitInput { camera, light, scene, map, origin: eye, previous: Some(&frame) };
+    let tight = tight().fit(&input).unwrap();
+    assert!(tight.views.iter().all(|view| view.content == Content::Redraw));
 }
 
 /// Scenes that do not need splits do not get them: how many views there are, and why no more.

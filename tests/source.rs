@@ -13,6 +13,7 @@ const LEVELS: &[(&str, u8)] = &[
     ("camera", 1),
     ("light", 1),
     ("scene", 1),
+    ("content", 1),
     ("frame", 2),
     ("encoding", 3),
     ("technique", 3),

@@ -47,6 +47,17 @@ impl DepthAlongLight {
         Some(Self { near, far })
     }
 
+    /// Over the whole scene: the same wherever the camera looks.
+    pub(crate) fn of_scene(light: &LightSpace, scene: &Scene, origin: DVec3) -> Self {
+        let ends = |bounds: &Aabb| {
+            let middle = light.travel().dot(bounds.centre() - origin);
+            let half = light.travel().abs().dot(bounds.half_size());
+            [middle - half, middle + half]
+        };
+        let [casters, receivers] = [ends(&scene.casters), ends(&scene.receivers)];
+        Self { near: casters[0].min(receivers[0]), far: receivers[1] }
+    }
+
     /// Widened at both ends by what f32 loses of positions as far out as these depths and `margin`'s.
     pub(crate) fn widened(self, margin: f64) -> Self {
         let margin = margin.max(rounding(self.near.abs().max(self.far.abs()), DVec3::ZERO));

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::camera::{Camera, Projection};
 use crate::fit::depth_range::rounding;
 use crate::report::Why;
-use crate::scene::DepthRange;
+use crate::scene::{Aabb, DepthRange};
 use crate::warp::bend::Bend;
 use crate::warp::window::Window;
 
@@ -79,6 +79,12 @@ pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
     }
     let low = ((window.low + grid) / texel).floor() * texel - grid;
     Window { low, high: low + texel * texels, ..*window }
+}
+
+/// What f32 loses of positions in a scene and of the origin, in powers of two: the same from frame to frame.
+pub(crate) fn steady_margin(bounds: &Aabb, origin: DVec3) -> f64 {
+    let reach = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
+    rounding(reach.max(f64::MIN_POSITIVE).log2().ceil().exp2(), DVec3::ZERO) + rounding(0.0, quantised_origin(origin))
 }
 
 /// The origin's distance from the world's, up to the next power of two: it may follow the eye, texels must not.

@@ -3,10 +3,12 @@
 use glam::{DVec2, DVec3, DVec4, UVec4};
 
 use crate::aliasing::extremes;
+use crate::content::{Content, Place};
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding, rounding_margin};
 use crate::fit::layout::{How, Layout};
+use crate::fit::snap::{self, Stabilise};
 use crate::focus::FocusBody;
 use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
 use crate::math::space::{Clip, Map, Render};
@@ -81,6 +83,10 @@ impl Texels {
 /// nothing to speak of.
 const CASTERS_BEHIND: f64 = 16.0;
 
+/// Parts of a texel that f32 may lose of the depth of a whole scene, for maps that are kept. At 1 contacts would leak by a texel; towards 0
+/// large scenes would not be kept.
+const COARSEST_DEPTH: f64 = 0.05;
+
 impl Fitter<'_> {
     /// From a window to a view and its uniforms, appended to the frame; `Err` where nothing casts into the window.
     pub(crate) fn view(&self, body: &FocusBody, layout: &Layout, frame: &mut ShadowFrame) -> Result<(), Why> {
@@ -97,7 +103,7 @@ impl Fitter<'_> {
         let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
             return Err(Why::NothingCastsHere);
         };
-        let depth = depth.widened(margin);
+        let depth = self.steady_depth(window, texel).unwrap_or(depth.widened(margin));
         let lost = rounding(depth.near.abs().max(depth.far.abs()), input.origin);
         cull::end_at(&mut cull, depth.far + CASTERS_BEHIND * lost);
         // One matrix, in f64, narrowed once; and what the receiver shader reads.
@@ -128,12 +134,43 @@ impl Fitter<'_> {
             texel: TexelSize { world: extremes.world, pixels: extremes.pixels },
             warp_strength: strength as f32,
             domain: extremes.domain,
+            content: Content::Redraw,
+            place: self.place(window, texel, depth),
         };
+        let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
+        let content = before.map_or(Content::Redraw, |before| Content::since(&before.place, &view.place));
+        let view = ShadowView { content, ..view };
         if frame.views.try_push(view).is_ok() {
             frame.uniforms.views[usize::from(self.index)] = uniforms;
             frame.uniforms.counts[0] += 1;
         }
         Ok(())
+    }
+
+    /// The depth of snapped maps: the scene's, so that maps can be kept, where f32 resolves it to a part of a texel.
+    fn steady_depth(&self, window: &Window, texel: DVec2) -> Option<DepthAlongLight> {
+        if self.how.stabilise == Stabilise::Off {
+            return None;
+        }
+        let (scene, origin) = (&self.input.scene, self.input.origin);
+        let margin = snap::steady_margin(&scene.casters.union(scene.receivers), origin);
+        let depth = DepthAlongLight::of_scene(&window.light, scene, origin);
+        let steady = DepthAlongLight { near: depth.near - margin, far: depth.far + margin };
+        (rounding(steady.far - steady.near, DVec3::ZERO) < COARSEST_DEPTH * texel.min_element()).then_some(steady)
+    }
+
+    /// Where a view's texels are in the world.
+    fn place(&self, window: &Window, texel: DVec2, depth: DepthAlongLight) -> Place {
+        let light = &window.light;
+        let origin = light.ray(self.input.origin);
+        Place {
+            axes: [light.p(), light.q(), light.travel()],
+            texel,
+            low: window.low + origin.truncate(),
+            depth: [depth.near + origin.z, depth.far + origin.z],
+            side: self.input.map.side,
+            uniform: window.bend.is_none(),
+        }
     }
 
     fn bias_input<'b>(
