@@ -53,11 +53,13 @@
 //! }
 //! ```
 
+mod depth_range;
 mod error;
 mod layout;
 
 use arrayvec::ArrayVec;
 
+pub use depth_range::DepthRangeProbe;
 pub use error::GpuError;
 pub use layout::{caster_layout, layout_entries};
 pub use wgpu;

@@ -1,6 +1,7 @@
 //! The library's shaders through the library's wgpu layer, against rays.
 
 mod many;
+mod probe;
 #[path = "../support/mod.rs"]
 mod support;
 
