@@ -1,25 +1,26 @@
 //! A frame with its maps, for lookups at any point and not at pixels alone.
 
-use antumbra::encoding::depth::DepthMap;
+use antumbra::encoding::depth::{CompareMap, DepthMap};
 use antumbra::encoding::split::antumbra_visibility;
 use antumbra::lab::raster::{DepthMode, DepthTarget, RasterPass, rasterise};
 use antumbra::lab::serving::serving;
 use antumbra::lab::subject::{Setting, Subject};
 use antumbra::{Remix, ShadowFrame, ShadowTechnique, ShadowUniforms, ShadowView};
-use glam::{DVec3, UVec2};
+use glam::{DVec3, UVec2, Vec2};
 
 /// A technique fitted to a setting, drawn.
 pub(crate) struct Drawn {
     pub(crate) frame: ShadowFrame,
     setting: Setting,
-    maps: Vec<Vec<f32>>,
+    maps: Vec<Layer>,
 }
 
 impl Drawn {
     pub(crate) fn new(subject: &Subject, setting: &Setting, remix: &Remix, side: u32) -> Self {
         let input = setting.input(subject, &[], remix.wgsl_key(), side);
         let frame = remix.fit(&input).expect("a legal setting");
-        let maps = frame.views.iter().map(|view| draw(subject, &frame, view, setting.origin)).collect();
+        let layer = |view| Layer { side, depth: draw(subject, &frame, view, setting.origin) };
+        let maps = frame.views.iter().map(layer).collect();
         Self { frame, setting: *setting, maps }
     }
 
@@ -30,18 +31,32 @@ impl Drawn {
 
     /// The same with other uniforms for the same maps.
     pub(crate) fn lit_by(&self, uniforms: &ShadowUniforms, point: DVec3, normal: DVec3) -> f32 {
-        let size = UVec2::splat(self.frame.map.side);
-        let maps: Vec<_> = self.maps.iter().map(|depth| DepthMap { size, depth }).collect();
         let Setting { camera, origin, .. } = &self.setting;
         let depth = camera.forward().dot(point - camera.eye()) as f32;
         let (position, normal) = ((point - origin).as_vec3(), normal.as_vec3());
-        antumbra_visibility(self.frame.wgsl, uniforms, &maps, position, normal, depth)
+        antumbra_visibility(self.frame.wgsl, uniforms, &self.maps, position, normal, depth)
     }
 
     /// The view that serves a world point.
     pub(crate) fn serving(&self, point: DVec3, normal: DVec3) -> Option<usize> {
         let Setting { camera, origin, .. } = &self.setting;
         serving(&self.frame, camera, *origin, point - origin, normal)
+    }
+}
+
+/// A map that owns its texels.
+struct Layer {
+    side: u32,
+    depth: Vec<f32>,
+}
+
+impl CompareMap for Layer {
+    fn size(&self) -> UVec2 {
+        UVec2::splat(self.side)
+    }
+
+    fn sample_compare(&self, uv: Vec2, depth: f32) -> f32 {
+        DepthMap { size: self.size(), depth: &self.depth }.sample_compare(uv, depth)
     }
 }
 

@@ -178,7 +178,7 @@ fn a_blend_is_no_worse_than_the_worse_of_its_maps() {
 fn pictures_of_seams() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
     over_built_in(|place| {
-        if !["treeline ahead", "sparse-city overview"].contains(&place.name.as_str()) {
+        if !["treeline ahead", "sparse-city across"].contains(&place.name.as_str()) {
             return;
         }
         for select in Select::ALL {
