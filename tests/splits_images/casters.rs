@@ -94,7 +94,9 @@ fn check(place: &Place, name: &str, remix: &Remix, knowledge: Knowledge) -> Tall
     let frame = remix.fit(&input).expect("a legal case");
     let views: Vec<Tally> = frame.views.iter().map(|view| count(place, view)).collect();
     let mut all = Tally::default();
-    views.iter().for_each(|view| all.add(*view));
+    for view in &views {
+        all.add(*view);
+    }
     let of_view = |view: &Tally| format!("{}/{}", view.drawn, view.exact);
     println!(
         "| {} | {name} | {} | {} | {} | {:.3} | {:.3} |",
@@ -124,9 +126,9 @@ fn views_draw_all_casters_and_few_others() {
             }
         };
         if shared {
-            over_shared(&mut add)
+            over_shared(&mut add);
         } else {
-            over_built_in(&mut add)
+            over_built_in(&mut add);
         }
         println!(
             "{set}: {} objects drawn, {} exact: {:.3}, {} missed",

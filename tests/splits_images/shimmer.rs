@@ -150,7 +150,9 @@ fn shimmer(subject: &Subject, frames: &[Frame], remix: &Remix, side: u32) -> Shi
             Some(Change { error: was - truth, point: change, same_map, pixel })
         };
         let looked: Vec<_> = (0..before.lit.len()).into_par_iter().filter_map(look).collect();
-        looked.iter().for_each(|change| found.add(change));
+        for change in &looked {
+            found.add(change);
+        }
         old = new;
     }
     found
@@ -190,9 +192,9 @@ fn measure(name: &str, subject: &Subject, start: &Viewpoint, broken: &mut Vec<St
             broken.push(format!("{name}: {snapped} of {off}"));
         }
         if kind == PathKind::Orbit && start.name == OTHERS_FROM {
-            OTHERS.iter().for_each(|map| {
-                compare(&name, subject, &frames, *map);
-            });
+            for map in OTHERS {
+                compare(&name, subject, &frames, map);
+            }
         }
     }
 }
