@@ -1,12 +1,3 @@
-// The first map whose depths hold the receiver; views that are not in use end nowhere, and read lit.
-fn antumbra_index(view_depth: f32) -> u32 {
-    var index = 0u;
-    for (var before = 0u; before + 1u < ANTUMBRA_MAPS; before++) {
-        index += select(0u, 1u, view_depth > antumbra_uniforms.views[before].domain.y);
-    }
-    return index;
-}
-
 fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
     let index = antumbra_index(view_depth);
     return antumbra_visible(antumbra_uniforms.views[index], index, antumbra_map, antumbra_compare, position, normal);

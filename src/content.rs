@@ -1,7 +1,8 @@
 //! What has become of a map since last frame: data for engines that keep the maps of still scenes.
 //!
 //! # References
-//! - Acton, *Scrolling cascaded shadow maps*, 2012 (cached cascades that move by whole texels are shifted, and redrawn along two strips).
+//! - Acton, *Scrolling cascaded shadow maps*, 2012 (cached cascades that move by whole texels are shifted, and redrawn
+//!   along two strips).
 
 use glam::{DVec2, DVec3, IVec2};
 
@@ -13,7 +14,8 @@ pub enum Content {
     Redraw,
     /// Nothing: its texels hold what they did.
     Unchanged,
-    /// What has come into view: the texel at (x, y) holds what the one at (x, y) + `texels` held, both counted from the upper left corner.
+    /// What has come into view: the texel at (x, y) holds what the one at (x, y) + `texels` held, both counted from the
+    /// upper left corner.
     Scrolled {
         /// Whole texels, x to the right and y down.
         texels: IVec2,
@@ -37,8 +39,8 @@ pub(crate) struct Place {
     pub(crate) uniform: bool,
 }
 
-/// Parts of a texel, and of the depth range, by which places may differ and be the same: rounding of f64 far from the origin. What f32
-/// makes of a thousandth is in every bias; more would show as a shift.
+/// Parts of a texel, and of the depth range, by which places may differ and be the same: rounding of f64 far from the
+/// origin. What f32 makes of a thousandth is in every bias; more would show as a shift.
 const SAME: f64 = 1e-3;
 
 /// Most texels that a map can scroll by and keep any.

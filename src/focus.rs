@@ -1,7 +1,8 @@
 //! What has to be in the map: the receivers in view that something may shadow, and the casters that may shadow them.
 //!
 //! # References
-//! - Scherzer, *Robust shadow maps for large environments*, section 4.1 and MATH.md section 2: body B and receivers LVS.
+//! - Scherzer, *Robust shadow maps for large environments*, section 4.1 and MATH.md section 2: body B and receivers
+//!   LVS.
 //! - Stamminger & Drettakis, *Perspective shadow maps*, H = M ∩ S ∩ L (MATH.md section 3).
 
 use arrayvec::ArrayVec;
@@ -27,8 +28,9 @@ pub(crate) struct FocusBody {
     pub(crate) left_out: ArrayVec<LeftOut, 2>,
 }
 
-/// Bounds are grown by this share of the largest coordinate that takes part (as seen from the origin of render space), so
-/// that rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs texels.
+/// Bounds are grown by this share of the largest coordinate that takes part (as seen from the origin of render space),
+/// so that rounding in f64, a thousand times smaller, never empties a flat box. Smaller loses flat ground; larger costs
+/// texels.
 const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Most walls: a box (6), and the shadow of a box (9).

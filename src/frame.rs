@@ -11,7 +11,8 @@ use crate::scene::{Aabb, MapBudget};
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
 
-/// Most lines of [`ShadowFrame::left_out`]: five a view (receivers, window, border, and two of the warp), and five of the whole.
+/// Most lines of [`ShadowFrame::left_out`]: five a view (receivers, window, border, and two of the warp), and five of
+/// the whole.
 pub const MAX_LEFT_OUT: usize = 5 * MAX_VIEWS + 5;
 
 /// Most planes of a [`CullVolume`].
@@ -24,8 +25,8 @@ pub struct WgslKey {
     pub filter: Pcf,
     /// Whether positions are divided by w on their way into the map.
     pub shape: MapShape,
-    /// Most maps of a frame, 1 to [`MAX_VIEWS`]: the length of the uniform array and of the layers. 1 is a plain map, and
-    /// a shader without arrays or loops.
+    /// Most maps of a frame, 1 to [`MAX_VIEWS`]: the length of the uniform array and of the layers. 1 is a plain map,
+    /// and a shader without arrays or loops.
     pub maps: u8,
     /// How a receiver finds its map among several; [`Select::Depth`] for one map.
     pub select: Select,
@@ -45,8 +46,8 @@ pub enum Select {
     /// By its eye depth: one comparison a map, one lookup.
     #[default]
     Depth,
-    /// The finest map that holds it and what its filter reads: near maps reach beyond their own depths. One lookup position
-    /// a map until it is found.
+    /// The finest map that holds it and what its filter reads: near maps reach beyond their own depths. One lookup
+    /// position a map until it is found.
     Finest,
 }
 
@@ -296,10 +297,10 @@ pub struct ViewUniforms {
     pub across_v: [f32; 4],
     /// Warped maps: W of `across_u`.
     pub across_w: [f32; 4],
-    /// Several maps: nearest and farthest eye depth that the view serves (found by depth, the last one serves everything behind
-    /// it). Found by depth: the depth at which it begins to give way to the next one, and one over the length of that band (0: no
-    /// band). Found by containment: what a filter reads beyond a receiver, and one over the width of the band along the rim
-    /// in which it gives way, texture coordinates.
+    /// Several maps: nearest and farthest eye depth that the view serves (found by depth, the last one serves
+    /// everything behind it). Found by depth: the depth at which it begins to give way to the next one, and one over
+    /// the length of that band (0: no band). Found by containment: what a filter reads beyond a receiver, and one over
+    /// the width of the band along the rim in which it gives way, texture coordinates.
     pub domain: [f32; 4],
 }
 

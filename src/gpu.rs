@@ -163,8 +163,8 @@ impl ShadowMaps {
 
     /// Uploads a frame: the uniforms of all maps that the key's shader reads (176 bytes each), and each view's matrix.
     ///
-    /// A frame may have fewer views than its key has maps: the others read lit, and their layers need not be drawn. That
-    /// of a frame without views is "everything is lit".
+    /// A frame may have fewer views than its key has maps: the others read lit, and their layers need not be drawn.
+    /// That of a frame without views is "everything is lit".
     ///
     /// # Errors
     /// The frame does not fit these maps; nothing was uploaded.
@@ -203,8 +203,9 @@ impl ShadowMaps {
         Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side, layers })
     }
 
-    /// Begins the depth pass of a view: its layer cleared to the farthest depth, its viewport set. The engine binds, and
-    /// draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last one.
+    /// Begins the depth pass of a view: its layer cleared to the farthest depth, its viewport set. The engine binds,
+    /// and draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last
+    /// one.
     pub fn caster_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,

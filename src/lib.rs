@@ -18,7 +18,8 @@
 //! textures, bind groups and passes as middleware, and still owns no device, submits nothing and polls nothing.
 //!
 //! # One frame
-//! Camera → focus body → slices → warp → window → ray coordinates → clip space → view → uniforms → shader, in one direction.
+//! Camera → focus body → slices → warp → window → ray coordinates → clip space → view → uniforms → shader, in one
+//! direction.
 //!
 //! ```
 //! use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Scene, ShadowTechnique, techniques, wgsl};

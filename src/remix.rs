@@ -32,16 +32,18 @@ impl Default for Encoding {
 /// What depth the texels of a warped map hold. Uniform maps hold linear depth either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthLaw {
-    /// Linear along the light, in every texel: casters of warped maps write it in a fragment shader. A plane across the light has no slope,
-    /// so that its bias is as small as in a uniform map.
+    /// Linear along the light, in every texel: casters of warped maps write it in a fragment shader. A plane across the
+    /// light has no slope, so that its bias is as small as in a uniform map.
     #[default]
     Linear,
-    /// Linear depth over w, as the rasteriser makes it: early depth tests and the hardware's bias work, and casters need no fragment shader. Depth
-    /// falls where w grows, so that the bias grows by as much: contacts leak more the stronger the warp.
+    /// Linear depth over w, as the rasteriser makes it: early depth tests and the hardware's bias work, and casters
+    /// need no fragment shader. Depth falls where w grows, so that the bias grows by as much: contacts leak more the
+    /// stronger the warp.
     Projective,
 }
 
-/// A technique, as a choice of stages. Every combination is legal; the named ones are in [`techniques`](crate::techniques).
+/// A technique, as a choice of stages. Every combination is legal; the named ones are in
+/// [`techniques`](crate::techniques).
 ///
 /// ```
 /// use antumbra::{Encoding, Pcf, Remix, Stabilise};
@@ -62,8 +64,8 @@ pub struct Remix {
     pub bias: Bias,
     /// Default: off, the sharpest.
     pub stabilise: Stabilise,
-    /// Limits published warps to the strength that is predicted to be no worse than uniform. Default: on; off reproduces the papers. Least-error
-    /// and fixed strengths are what they are either way.
+    /// Limits published warps to the strength that is predicted to be no worse than uniform. Default: on; off
+    /// reproduces the papers. Least-error and fixed strengths are what they are either way.
     pub guard: bool,
 }
 

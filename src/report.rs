@@ -48,7 +48,8 @@ pub enum Why {
         /// Number of the view.
         view: u8,
     },
-    /// The map of this split has texels that are hardly larger, or too small to be seen, and serves its receivers as well.
+    /// The map of this split has texels that are hardly larger, or too small to be seen, and serves its receivers as
+    /// well.
     MetBy {
         /// Number of the split.
         split: u8,

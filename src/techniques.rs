@@ -70,7 +70,8 @@ named! {
 
     /// Parallel-split shadow maps: three maps, practical splits with λ = ½, no warp.
     ///
-    /// F. Zhang, H. Sun, L. Xu, L. K. Lun, *Parallel-split shadow maps for large-scale virtual environments*, VRCIA 2006.
+    /// F. Zhang, H. Sun, L. Xu, L. K. Lun, *Parallel-split shadow maps for large-scale virtual environments*, VRCIA
+    /// 2006.
     pssm "pssm" Split::Depth(PSSM), Warp::Focused;
 
     /// Cascades: four maps where they pay most, each with the warp that pays there. This crate's own.

@@ -129,8 +129,8 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 /// The debug view of aliasing, for engines that ask for it: append it to the text of [`module`] or [`library`].
 /// `antumbra_footprint(view, side, position, d_position_dx, d_position_dy)` gives the texels over a pixel, of which 1
 /// or more mean no aliasing; `antumbra_footprint_colour(texels_per_pixel)` gives an sRGB colour of that. The
-/// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`, with several
-/// found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
+/// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`, with
+/// several found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
 const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
@@ -173,17 +173,34 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
          @group({group}) @binding({map}) var antumbra_map: {texture};\n\
          @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n"
     );
-    text.push_str(match (key.maps > 1, key.select, key.blend) {
-        (false, ..) => ONE_MAP,
-        (true, Select::Depth, false) => include_str!("../shaders/select_depth.wgsl"),
-        (true, Select::Depth, true) => include_str!("../shaders/select_depth_blend.wgsl"),
-        (true, Select::Finest, false) => include_str!("../shaders/select_finest.wgsl"),
-        (true, Select::Finest, true) => include_str!("../shaders/select_finest_blend.wgsl"),
-    });
+    for part in calls(key) {
+        text.push('\n');
+        text.push_str(part);
+    }
     if key.maps == 1 && key.shape == MapShape::Affine {
         text.push_str(TWO_STAGES);
     }
     text
+}
+
+/// What an engine calls, and how it finds its map.
+fn calls(key: WgslKey) -> ArrayVec<&'static str, 2> {
+    const INDEX: &str = include_str!("../shaders/select_index.wgsl");
+    const ROOM: &str = include_str!("../shaders/select_room.wgsl");
+    let mut calls = ArrayVec::new();
+    if key.maps <= 1 {
+        calls.push(ONE_MAP);
+        return calls;
+    }
+    let (how, call) = match (key.select, key.blend) {
+        (Select::Depth, false) => (INDEX, include_str!("../shaders/select_depth.wgsl")),
+        (Select::Depth, true) => (INDEX, include_str!("../shaders/select_depth_blend.wgsl")),
+        (Select::Finest, false) => (ROOM, include_str!("../shaders/select_finest.wgsl")),
+        (Select::Finest, true) => (ROOM, include_str!("../shaders/select_finest_blend.wgsl")),
+    };
+    calls.push(how);
+    calls.push(call);
+    calls
 }
 
 impl WgslKey {

@@ -1,5 +1,5 @@
-//! What engines expect of cascades: the eight properties that the best-tested peer checks for its own, and those that it
-//! does not: light along the camera's up, light along the view, a world far from its origin, no shimmer.
+//! What engines expect of cascades: the eight properties that the best-tested peer checks for its own, and those that
+//! it does not: light along the camera's up, light along the view, a world far from its origin, no shimmer.
 
 use antumbra::split::depth::planes;
 use antumbra::{
@@ -251,8 +251,8 @@ fn snapped_maps_do_not_shimmer() {
     assert!(compared == 299 * 4 * 20 && worst <= 1e-3, "{worst}");
 }
 
-/// What an engine that keeps maps is told along a walk: after the first frame nothing is drawn as a whole again, and what scrolls does so
-/// by as many texels as points of the world move.
+/// What an engine that keeps maps is told along a walk: after the first frame nothing is drawn as a whole again, and
+/// what scrolls does so by as many texels as points of the world move.
 #[test]
 fn snapped_maps_scroll_or_stay() {
     let remix = cascades();
@@ -339,8 +339,9 @@ mod what_is_left_out {
         camera
     }
 
-    /// Light that falls in through the end of a corridor: all of it is as wide as its section, which the view takes in as a whole from
-    /// some way off. From inside, the view is narrower than the section at first, and maps of that are finer.
+    /// Light that falls in through the end of a corridor: all of it is as wide as its section, which the view takes in
+    /// as a whole from some way off. From inside, the view is narrower than the section at first, and maps of that are
+    /// finer.
     #[test]
     fn a_corridor_lit_along_it() {
         let corridor = Aabb::new(DVec3::new(-2.0, 0.0, -60.0), DVec3::new(2.0, 3.0, 0.0));

@@ -105,8 +105,8 @@ impl Path {
         points
     }
 
-    /// By how many texels the map moves between two times, at worst over what is in view; maps that are turned by quarters hold the
-    /// same texels.
+    /// By how many texels the map moves between two times, at worst over what is in view; maps that are turned by
+    /// quarters hold the same texels.
     fn change(&self, before: &ShadowFrame, after: &ShadowFrame, time: f64) -> Option<f64> {
         let (before, after) = (before.views.first()?, after.views.first()?);
         let place = |view: &antumbra::ShadowView, point: DVec3| {
@@ -158,8 +158,8 @@ fn largest(changes: &[f64]) -> f64 {
 /// Halvings of the steepest step of a path.
 const HALVINGS: usize = 24;
 
-/// What remains of the steepest step after [`HALVINGS`] halvings, always into the steeper half, texels. A continuous map leaves a
-/// share of 1/16777216; a jump stays what it is.
+/// What remains of the steepest step after [`HALVINGS`] halvings, always into the steeper half, texels. A continuous
+/// map leaves a share of 1/16777216; a jump stays what it is.
 fn remains(path: &Path, remix: &Remix, changes: &[f64]) -> f64 {
     let steepest = changes.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     let (mut from, mut to) = (steepest as f64 / STEPS as f64, (steepest + 1) as f64 / STEPS as f64);
@@ -177,7 +177,8 @@ struct Findings {
     paths: usize,
     /// Steps that do not shrink with the step.
     jumps: Vec<usize>,
-    /// Paths whose largest step is more than four times the median of its neighbours: maps that turn fast because what is in view does.
+    /// Paths whose largest step is more than four times the median of its neighbours: maps that turn fast because what
+    /// is in view does.
     uneven: usize,
     /// Paths whose largest change is less than halved by half the step.
     not_halved: usize,
@@ -200,8 +201,9 @@ fn findings(remix: &Remix) -> Findings {
     found
 }
 
-/// What may remain of a step after 24 halvings, texels of 1024: strengths are searched to 3e-5, and where two windows are equally small a
-/// window turns much faster than its strength changes. Measured: up to 1.5 texels on one path in a hundred, hundredths else. A jump leaves tens.
+/// What may remain of a step after 24 halvings, texels of 1024: strengths are searched to 3e-5, and where two windows
+/// are equally small a window turns much faster than its strength changes. Measured: up to 1.5 texels on one path in a
+/// hundred, hundredths else. A jump leaves tens.
 const MOST_REMAINS: f64 = 3.0;
 
 /// Guarded warps and least-error follow the camera and the light without a jump, through the direction of light too.
@@ -219,7 +221,8 @@ fn warped_maps_are_continuous() {
         );
         assert!(found.paths > 900);
         match *name {
-            // A focused window gives way to the scene's where that is hardly larger: a switch, for maps that can be kept.
+            // A focused window gives way to the scene's where that is hardly larger: a switch, for maps that can be
+            // kept.
             "fsm" => assert!(found.jumps.len() <= MOST_SWITCHES, "{name}: {:?}", found.jumps),
             _ => assert!(found.jumps.len() <= MOST_VALLEYS, "{name} jumps on paths {:?}", found.jumps),
         }

@@ -140,8 +140,8 @@ fn what_is_wrong_away_from_edges_is_explained_by_a_texel() {
 /// Names how many placements of each map are averaged; more take longer.
 const PLACEMENTS_VARIABLE: &str = "ANTUMBRA_PLACEMENTS";
 
-/// Placements without that variable. Fewer leave the mean to chance: of 4 and of 8, sparsecity-entity's figure, which is smaller than
-/// a texel there, is hit as often at 512 texels as at 1024. More take longer than the test is worth.
+/// Placements without that variable. Fewer leave the mean to chance: of 4 and of 8, sparsecity-entity's figure, which
+/// is smaller than a texel there, is hit as often at 512 texels as at 1024. More take longer than the test is worth.
 const PLACEMENTS: u32 = 16;
 
 /// Sizes of maps, texels.

@@ -1,5 +1,5 @@
-//! What every split fit promises, over hostile inputs: slices cover the range, each receiver that something can shadow finds a
-//! map with all that its filter reads, and what can shadow it is drawn there.
+//! What every split fit promises, over hostile inputs: slices cover the range, each receiver that something can shadow
+//! finds a map with all that its filter reads, and what can shadow it is drawn there.
 
 mod common;
 
@@ -64,7 +64,8 @@ fn remixes() -> impl Strategy<Value = Remix> {
     })
 }
 
-/// The views that a receiver is looked up in: by depth, one or two that are blended; by containment, the first that holds it.
+/// The views that a receiver is looked up in: by depth, one or two that are blended; by containment, the first that
+/// holds it.
 fn serving(key: WgslKey, frame: &ShadowFrame, at: Vec3, depth: f32) -> Vec<usize> {
     let used = frame.views.len();
     if key.maps == 1 {

@@ -55,7 +55,8 @@ impl Cells {
         Ok(Self { all, flawless: flawless.len(), failed: failed.len() })
     }
 
-    /// How well prediction ranks every size and strength of a case, one number a case of `set`: Spearman's rank correlation.
+    /// How well prediction ranks every size and strength of a case, one number a case of `set`: Spearman's rank
+    /// correlation.
     pub(crate) fn agreement_within_cases(&self, set: &str) -> Vec<f64> {
         let cases =
             self.all.chunk_by(|a, b| (&a.set, &a.case) == (&b.set, &b.case)).filter(|cells| cells[0].set == set);

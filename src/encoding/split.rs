@@ -12,8 +12,8 @@ use glam::{Vec2, Vec3};
 use super::depth::{CompareMap, Lookup, antumbra_filter, antumbra_look};
 use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
 
-/// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. `maps` are the layers, as many as
-/// the frame has views; a view without a map reads lit.
+/// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. `maps` are the layers, as
+/// many as the frame has views; a view without a map reads lit.
 #[must_use]
 pub fn antumbra_visibility<M: CompareMap>(
     key: WgslKey,

@@ -20,14 +20,14 @@
 //! J is the derivative of texels by place across the light at the receiver, g how much a texel outgrows its neighbours
 //! there, R the reach, c the share of the lift that is along the light: 1 down to a cosine of [`GRAZING_COSINE`], then
 //! falling to 0 with the cosine. A tap at o texels from δ, which reads texels δ + Δ with |Δ| ≤ R and |Δ − o| ≤ tap, is
-//! lit if h(δ + Δ) + c lift − c fall·o ≥ 0 for all of them. Times 1 − g·(δ + Δ) > 0 that is the sum of a part with
-//! 1 − c, R (|`fall_u`| + |`fall_v`|) + fall·Δ ≥ 0, in which no growth appears, and a part with c, which (4) satisfies. (3)
+//! lit if h(δ + Δ) + c lift − c fall·o ≥ 0 for all of them. Times 1 − g·(δ + Δ) > 0 that is the sum of a part with 1 −
+//! c, R (|`fall_u`| + |`fall_v`|) + fall·Δ ≥ 0, in which no growth appears, and a part with c, which (4) satisfies. (3)
 //! is at most (1 + √2)/2 of the reach along either axis, whatever the shape of texels, so that it stays within the
 //! map's border. In a map of square, equal texels it is the way along the normal, over the squared sine of incidence.
 //!
 //! # References
-//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| + |`n_y`|),
-//!   bounded.
+//! - `MATH.md` section 7, *Bias*: b = (r + ½) s (|`n_x`| + |`n_y`|) / |`n_z`|, exact; δ = (r + ½) s (|`n_x`| +
+//!   |`n_y`|), bounded.
 
 use glam::{DVec2, DVec3, DVec4, Vec4};
 

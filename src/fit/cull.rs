@@ -6,8 +6,8 @@ use glam::DVec3;
 use crate::frame::CullVolume;
 use crate::warp::window::Window;
 
-/// The prism along the light over a window, ending at `far` and open towards the light. What lies at or behind the centre of
-/// projection of a warped map (W ≤ 0) is outside: opposite sides add up to a positive multiple of W.
+/// The prism along the light over a window, ending at `far` and open towards the light. What lies at or behind the
+/// centre of projection of a warped map (W ≤ 0) is outside: opposite sides add up to a positive multiple of W.
 pub(crate) fn prism(window: &Window, far: f64, origin: DVec3) -> CullVolume {
     let light = &window.light;
     let mut planes = ArrayVec::new();

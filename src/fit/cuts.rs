@@ -1,7 +1,8 @@
 //! Which slices get a map: as many as the budget allows, and no more than the picture needs.
 //!
-//! Slices that f32 cannot tell apart are one slice. Slices are one as well where a map of both has texels hardly larger than a map of the
-//! first alone (light along the view; receivers in the distance), or so small in the picture that more would not be seen.
+//! Slices that f32 cannot tell apart are one slice. Slices are one as well where a map of both has texels hardly larger
+//! than a map of the first alone (light along the view; receivers in the distance), or so small in the picture that
+//! more would not be seen.
 //!
 //! # References
 //! - `MATH.md` section 8: m, the size of a texel in pixels; 1 or less is no aliasing.
@@ -19,12 +20,12 @@ use crate::split::depth::{DepthSplits, planes};
 use crate::split::equal_error;
 use crate::split::profile::Profile;
 
-/// Depth of a slice as a multiple of what f32 loses of positions: thinner ones are told apart by rounding alone. Larger gives up slices
-/// that are of use.
+/// Depth of a slice as a multiple of what f32 loses of positions: thinner ones are told apart by rounding alone. Larger
+/// gives up slices that are of use.
 const THINNEST: f64 = 4.0;
 
-/// Texels may be larger by this share for a slice to join the one before it. At 0 no two slices ever join; at 1 every second map is given
-/// away for texels of twice the size.
+/// Texels may be larger by this share for a slice to join the one before it. At 0 no two slices ever join; at 1 every
+/// second map is given away for texels of twice the size.
 const HARDLY_LARGER: f64 = 0.05;
 
 /// A slice with a map of its own.
@@ -43,8 +44,8 @@ pub(crate) struct Cuts {
 }
 
 impl Fitter<'_> {
-    /// Cuts the eye depths `range` of a body. Of maps that stand still, those that this frame could do without are kept, because the next one
-    /// may need them.
+    /// Cuts the eye depths `range` of a body. Of maps that stand still, those that this frame could do without are
+    /// kept, because the next one may need them.
     pub(crate) fn cuts(
         &self,
         body: &FocusBody,

@@ -65,8 +65,8 @@ impl DepthAlongLight {
     }
 }
 
-/// A lower bound of the depth at which rays of the window enter a box (render space): for each pair of faces that rays do
-/// not run along, the least depth over the window at which they pass the first one; the largest of those.
+/// A lower bound of the depth at which rays of the window enter a box (render space): for each pair of faces that rays
+/// do not run along, the least depth over the window at which they pass the first one; the largest of those.
 fn entry(light: &LightSpace, bounds: &Aabb, corners: &[DVec2; 4]) -> f64 {
     let mut entry = f64::NEG_INFINITY;
     for axis in 0..3 {
@@ -91,8 +91,8 @@ const LEAST_SLOPE: f64 = 1e-3;
 /// texels only where positions are as coarse as texels.
 const POSITION_ROUNDINGS: f64 = 4.0;
 
-/// What f32 loses of coordinates as large as `reach`, and f64 of world coordinates as large as `origin`'s, world units. Never
-/// zero, so that nothing divides by zero.
+/// What f32 loses of coordinates as large as `reach`, and f64 of world coordinates as large as `origin`'s, world units.
+/// Never zero, so that nothing divides by zero.
 pub(crate) fn rounding(reach: f64, origin: DVec3) -> f64 {
     let narrowed = POSITION_ROUNDINGS * f64::from(f32::EPSILON) * reach;
     let world = WORLD_ROUNDINGS * f64::EPSILON * origin.abs().max_element();

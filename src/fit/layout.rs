@@ -17,21 +17,22 @@ use crate::warp::sight::{Choice, Sight};
 use crate::warp::window::Window;
 use crate::warp::{Warp, lispsm, minimax, perspective, trapezoid};
 
-/// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera for
-/// next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of the
-/// error). At 0.9 the still map costs at most 5 % of a texel's side, and can be kept as long as the scene is still.
+/// A focused window is used when its area is at most this share of the whole scene's. At 1 every map follows the camera
+/// for next to nothing; at 0.8 texels would be given away that a picture shows (a tenth of their side, about a tenth of
+/// the error). At 0.9 the still map costs at most 5 % of a texel's side, and can be kept as long as the scene is still.
 const WORTH_FOCUSING: f64 = 0.9;
 
-/// Beyond the base line, a map has room for λ/(κλ) of its bent extent before the horizon: the border may take up to this share of it. At 1
-/// the outermost texels would reach infinity; near 0 only weak warps would be possible in small maps.
+/// Beyond the base line, a map has room for λ/(κλ) of its bent extent before the horizon: the border may take up to
+/// this share of it. At 1 the outermost texels would reach infinity; near 0 only weak warps would be possible in small
+/// maps.
 const MOST_HORIZON: f64 = 0.5;
 
-/// By how much W may change over what positions are uncertain by. At 1 a vertex on the top line could have W = 0; near 0 warps would be
-/// given up where f32 still serves them.
+/// By how much W may change over what positions are uncertain by. At 1 a vertex on the top line could have W = 0; near
+/// 0 warps would be given up where f32 still serves them.
 const MOST_ROUNDING: f64 = 0.125;
 
-/// The same for casters, whose texel hardly matters, but which must not come to lie behind the centre of projection: at 1 they could; near
-/// 0 warps would be given up because something stands far away.
+/// The same for casters, whose texel hardly matters, but which must not come to lie behind the centre of projection: at
+/// 1 they could; near 0 warps would be given up because something stands far away.
 const MOST_ROUNDING_OF_CASTERS: f64 = 0.5;
 
 /// How windows are laid.
@@ -80,8 +81,9 @@ impl Fitter<'_> {
         Layout::uniform(window)
     }
 
-    /// The window of nearly least area around what is in view; around the whole scene where that has hardly larger texels, because
-    /// a map that does not follow the camera need not be drawn anew. The body is what the window is around.
+    /// The window of nearly least area around what is in view; around the whole scene where that has hardly larger
+    /// texels, because a map that does not follow the camera need not be drawn anew. The body is what the window is
+    /// around.
     fn focused(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let tight = self.tight(body);
         let window = &tight.window;
@@ -110,8 +112,8 @@ impl Fitter<'_> {
         Layout { whole: true, ..Layout::uniform(window) }
     }
 
-    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller. The body is what the
-    /// window is around.
+    /// The window of constant size that moves with the camera by whole texels; the still one where that is smaller. The
+    /// body is what the window is around.
     fn snapped(&self, body: &mut FocusBody, frame: &mut ShadowFrame) -> Layout {
         let Ok(whole) = FocusBody::of_scene(&self.input.scene, self.travel, self.input.origin) else {
             return self.still(body, Why::AlreadyStill, frame);
@@ -131,8 +133,8 @@ impl Fitter<'_> {
         }
     }
 
-    /// The window around what is in view, bent by what a warp chooses; a guard limits it to what is predicted to be no worse than
-    /// uniform.
+    /// The window around what is in view, bent by what a warp chooses; a guard limits it to what is predicted to be no
+    /// worse than uniform.
     fn warped(&self, body: &FocusBody, warp: Warp, guard: bool, frame: &mut ShadowFrame) -> Layout {
         let (camera, origin) = (&self.input.camera, self.input.origin);
         let margin = rounding_margin(&body.vertices, origin);
@@ -179,8 +181,8 @@ impl Fitter<'_> {
         Layout { window, strength, error, whole: false }
     }
 
-    /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain by these margins.
-    /// None for bodies that are no longer than their positions are uncertain.
+    /// The largest κλ that a map of these texels takes in a frame, positions of receivers and casters being uncertain
+    /// by these margins. None for bodies that are no longer than their positions are uncertain.
     fn strongest(&self, around: &WarpFrame, sight: &Sight, margin: f64, margin_of_casters: f64) -> f64 {
         let extent = around.extent;
         let by_border = MOST_HORIZON * self.texels.over_window() / self.texels.border();
@@ -193,7 +195,8 @@ impl Fitter<'_> {
         STRONGEST.min(by_border).min(by_receivers).min(by_casters).min(by_distance)
     }
 
-    /// What f32 may lose of the positions of casters, which stand before the body as far as their bounds reach towards the light.
+    /// What f32 may lose of the positions of casters, which stand before the body as far as their bounds reach towards
+    /// the light.
     fn margin_of_casters(&self, body: &FocusBody) -> f64 {
         let casters = &self.input.scene.casters;
         let first = self.travel.dot(casters.centre() - self.input.origin) - self.travel.abs().dot(casters.half_size());
@@ -209,8 +212,8 @@ impl Fitter<'_> {
     }
 }
 
-/// Area of the smallest rectangle around a box as the light sees it: a hexagon of three pairs of edges, one of which the rectangle is
-/// flush with.
+/// Area of the smallest rectangle around a box as the light sees it: a hexagon of three pairs of edges, one of which
+/// the rectangle is flush with.
 fn least_area(bounds: &Aabb, travel: DVec3) -> f64 {
     let size = bounds.max - bounds.min;
     let light = LightSpace::fixed(travel);

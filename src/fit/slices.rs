@@ -12,14 +12,15 @@ use crate::report::{Part, Why};
 use crate::scene::DepthRange;
 use crate::split::depth::DepthSplits;
 
-/// How far beyond its rim the last map is looked up, texture coordinates: as far as receivers are, which read lit there.
+/// How far beyond its rim the last map is looked up, texture coordinates: as far as receivers are, which read lit
+/// there.
 const NO_RIM: f32 = -1e30;
 
 impl Fitter<'_> {
     /// Cuts a body in view into slices, lays each out, and appends their views.
     ///
-    /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share one, and slices
-    /// behind a map of the whole scene need none: the report says so.
+    /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share
+    /// one, and slices behind a map of the whole scene need none: the report says so.
     pub(crate) fn slices(&self, body: &FocusBody, splits: &DepthSplits, frame: &mut ShadowFrame) {
         let range = self.range(body);
         let Cuts { slices, margin } = self.cuts(body, range, splits, frame);
@@ -85,7 +86,8 @@ impl Fitter<'_> {
     fn finish(&self, splits: &DepthSplits, range: DepthRange, frame: &mut ShadowFrame) {
         let used = frame.views.len();
         let Some(last) = used.checked_sub(1) else { return };
-        // A view whose neighbour was left out gives way to nothing: there is no receiver behind it that anything shadows.
+        // A view whose neighbour was left out gives way to nothing: there is no receiver behind it that anything
+        // shadows.
         let views = &mut frame.uniforms.views[..used];
         for index in 0..last {
             if views[index + 1].domain[0] > views[index].domain[1] && splits.select == Select::Depth {

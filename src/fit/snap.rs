@@ -1,7 +1,8 @@
 //! Maps that do not crawl: a window of constant size on a grid that is fixed to the world.
 //!
 //! # References
-//! - Valient, *Stable rendering of cascaded shadow maps*, `ShaderX6`, 2008: a sphere around the frustum, snapped to texels.
+//! - Valient, *Stable rendering of cascaded shadow maps*, `ShaderX6`, 2008: a sphere around the frustum, snapped to
+//!   texels.
 
 use glam::{DVec2, DVec3};
 
@@ -27,11 +28,11 @@ pub enum Stabilise {
 /// edges jump, more often; fewer waste texels (16: at most 4.5 % of a side).
 const STEPS_PER_OCTAVE: f64 = 16.0;
 
-/// The window of a snapped map: square, of a size that depends on the camera's lens and the depths and not on where it looks, placed on a
-/// world-fixed grid of texels. `texels` is the number of texels over its side.
+/// The window of a snapped map: square, of a size that depends on the camera's lens and the depths and not on where it
+/// looks, placed on a world-fixed grid of texels. `texels` is the number of texels over its side.
 ///
-/// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, the scene is no larger, or f64
-/// does not resolve texels so far from the world's origin.
+/// `Err` says why the window of the whole scene, `scene`, serves instead: the frustum has no end, the scene is no
+/// larger, or f64 does not resolve texels so far from the world's origin.
 pub(crate) fn snapped(
     camera: &Camera,
     depth: DepthRange,
@@ -92,8 +93,8 @@ fn quantised_origin(origin: DVec3) -> DVec3 {
     DVec3::splat(origin.length().log2().ceil().exp2())
 }
 
-/// Steps of f64 that a texel must have at its place in the world, so that snapping holds to 1/1000 of it. Fewer let maps miss
-/// what they are for; more give snapping up nearer to the world's origin.
+/// Steps of f64 that a texel must have at its place in the world, so that snapping holds to 1/1000 of it. Fewer let
+/// maps miss what they are for; more give snapping up nearer to the world's origin.
 const STEPS_PER_TEXEL: f64 = 1024.0;
 
 /// Whether f64 tells parts of a texel apart as far out as `grid`, the origin of render space across the light.
@@ -110,7 +111,8 @@ fn quantised_up(size: f64) -> f64 {
 fn bounding_sphere(projection: &Projection, DepthRange { near, far }: DepthRange) -> (f64, f64) {
     match *projection {
         Projection::Perspective { left, right, down, up, .. } => {
-            // Tangent of the widest corner. The sphere through the near and the far corners, or the far corners' circle.
+            // Tangent of the widest corner. The sphere through the near and the far corners, or the far corners'
+            // circle.
             let spread = left.abs().max(right.abs()).powi(2) + down.abs().max(up.abs()).powi(2);
             let centre = (0.5 * (near + far) * (1.0 + spread)).min(far);
             let corner = |depth: f64| (spread * depth * depth + (depth - centre) * (depth - centre)).sqrt();

@@ -49,8 +49,8 @@ pub(crate) struct Texels {
 }
 
 impl Texels {
-    /// The filter reads up to its reach beyond a point that the bias has moved by up to √2 reaches across the light; one
-    /// more texel absorbs snapping, and one is the ring. Maps that are too small for that have what they can.
+    /// The filter reads up to its reach beyond a point that the bias has moved by up to √2 reaches across the light;
+    /// one more texel absorbs snapping, and one is the ring. Maps that are too small for that have what they can.
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
         let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2;
         let border = wanted.min(side.saturating_sub(1) / 2);
@@ -78,13 +78,13 @@ impl Texels {
     }
 }
 
-/// How far behind the last receiver casters are drawn, as a multiple of what f32 loses of depths along the light: where maps are found by containment, a
-/// receiver just behind a map is still looked up in it, as far as its bias lifts it for rounding. 1 could cull its caster; more costs
-/// nothing to speak of.
+/// How far behind the last receiver casters are drawn, as a multiple of what f32 loses of depths along the light: where
+/// maps are found by containment, a receiver just behind a map is still looked up in it, as far as its bias lifts it
+/// for rounding. 1 could cull its caster; more costs nothing to speak of.
 const CASTERS_BEHIND: f64 = 16.0;
 
-/// Parts of a texel that f32 may lose of the depth of a whole scene, for maps that are kept. At 1 contacts would leak by a texel; towards 0
-/// large scenes would not be kept.
+/// Parts of a texel that f32 may lose of the depth of a whole scene, for maps that are kept. At 1 contacts would leak
+/// by a texel; towards 0 large scenes would not be kept.
 const COARSEST_DEPTH: f64 = 0.05;
 
 impl Fitter<'_> {
@@ -236,7 +236,8 @@ mod tests {
     const SIDE: u32 = 2048;
     const TRAVEL: DVec3 = DVec3::new(0.36, -0.8, 0.48);
 
-    /// A view over open ground, `offset` away from the world's origin; render space around the eye, or around the world's origin.
+    /// A view over open ground, `offset` away from the world's origin; render space around the eye, or around the
+    /// world's origin.
     fn input(offset: f64, around_eye: bool) -> FitInput<'static> {
         let eye = DVec3::new(0.6, 0.48, -0.64) * offset;
         let world_from_view = DMat4::from_translation(eye) * DMat4::from_rotation_y(0.3);
@@ -285,8 +286,9 @@ mod tests {
         positions(&input.camera).map(off).fold(0.0, f64::max)
     }
 
-    /// What f32 loses by world offset and strength: around the eye, 1/100 of a texel at most at every offset and every strength up to
-    /// 1e5, of which fits give those up to 1e3 (limits come first); around the world's origin, many texels.
+    /// What f32 loses by world offset and strength: around the eye, 1/100 of a texel at most at every offset and every
+    /// strength up to 1e5, of which fits give those up to 1e3 (limits come first); around the world's origin, many
+    /// texels.
     #[test]
     fn what_f32_loses() {
         let strengths = [0.0, 1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6];

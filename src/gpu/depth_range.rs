@@ -1,9 +1,9 @@
 //! The range of what is seen, out of the engine's depth buffer, without a stall.
 //!
-//! A compute pass reduces the depth buffer to two numbers, which are read back while later frames are drawn. What arrives is the range of an
-//! earlier frame: one or two frames old as a rule, three at most before a frame is passed over. Engines that hand it to a fit as
-//! `scene.visible_depth` widen it by as much as the camera may have come nearer or gone away in that time: receivers outside of the range read
-//! lit.
+//! A compute pass reduces the depth buffer to two numbers, which are read back while later frames are drawn. What
+//! arrives is the range of an earlier frame: one or two frames old as a rule, three at most before a frame is passed
+//! over. Engines that hand it to a fit as `scene.visible_depth` widen it by as much as the camera may have come nearer
+//! or gone away in that time: receivers outside of the range read lit.
 //!
 //! # References
 //! - Lauritzen, Salvi & Lefohn, *Sample distribution shadow maps*, 2011.
@@ -98,8 +98,8 @@ impl DepthRangeProbe {
         }
     }
 
-    /// Records the reduction of a depth buffer, of `width × height` pixels, not multisampled, made with `TEXTURE_BINDING`. After the
-    /// submission of `encoder` call [`submitted`](Self::submitted).
+    /// Records the reduction of a depth buffer, of `width × height` pixels, not multisampled, made with
+    /// `TEXTURE_BINDING`. After the submission of `encoder` call [`submitted`](Self::submitted).
     ///
     /// False, and nothing is recorded, while all results are on their way: the frame is passed over, nothing waits.
     pub fn record(
@@ -146,8 +146,8 @@ impl DepthRangeProbe {
         }
     }
 
-    /// The newest range that has arrived, as eye depths of a camera with this projection (any depth convention, finite or infinite far
-    /// plane); `None` until the first one arrives, and where nothing was drawn.
+    /// The newest range that has arrived, as eye depths of a camera with this projection (any depth convention, finite
+    /// or infinite far plane); `None` until the first one arrives, and where nothing was drawn.
     pub fn latest(&mut self, clip_from_view: &DMat4) -> Option<DepthRange> {
         self.collect();
         let (_, bits) = self.latest?;
@@ -185,7 +185,8 @@ impl DepthRangeProbe {
     }
 }
 
-/// Eye depth of a value of the depth buffer: where the projection's third and fourth row have that ratio on the view axis.
+/// Eye depth of a value of the depth buffer: where the projection's third and fourth row have that ratio on the view
+/// axis.
 fn eye_depth(clip_from_view: &DMat4, depth: f64) -> f64 {
     let [z, w] = [clip_from_view.row(2), clip_from_view.row(3)];
     (w.w * depth - z.w) / (w.z * depth - z.z)

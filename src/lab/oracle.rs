@@ -128,8 +128,8 @@ impl<'s> Oracle<'s> {
     }
 
     /// The mask of an ideal lookup in a frame, which was fitted with its render space at `origin`: 0 (shadow) to 1
-    /// (light), row 0 on top; 1 where the truth is not valid, and where no view serves. Each receiver is looked up in one
-    /// view: nothing is blended.
+    /// (light), row 0 on top; 1 where the truth is not valid, and where no view serves. Each receiver is looked up in
+    /// one view: nothing is blended.
     #[must_use]
     pub fn mask(&self, frame: &ShadowFrame, origin: DVec3, compare: Compare) -> Vec<f32> {
         let filter = frame.wgsl.filter;

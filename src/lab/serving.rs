@@ -9,9 +9,9 @@ use crate::frame::{MAX_VIEWS, Select, ShadowFrame};
 
 /// The view of a frame that serves a point of a receiver with a normal, both in render space around `origin`.
 ///
-/// One map serves everything. Of several, as the frame's key selects: the one whose depths hold the point's eye depth, or
-/// the first one that holds the point and what its filter reads. Where two are blended, it is the nearer or the finer one.
-/// `None` where no view serves it: there it reads lit.
+/// One map serves everything. Of several, as the frame's key selects: the one whose depths hold the point's eye depth,
+/// or the first one that holds the point and what its filter reads. Where two are blended, it is the nearer or the
+/// finer one. `None` where no view serves it: there it reads lit.
 #[must_use]
 pub fn serving(frame: &ShadowFrame, camera: &Camera, origin: DVec3, position: DVec3, normal: DVec3) -> Option<usize> {
     let (key, views) = (frame.wgsl, frame.views.len());

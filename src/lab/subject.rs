@@ -103,8 +103,8 @@ impl Setting {
             .collect()
     }
 
-    /// The eye depths of everything that is seen within the shadow distance, as an engine reduces last frame's depth buffer:
-    /// exact at pixel centres, and a thousandth wider.
+    /// The eye depths of everything that is seen within the shadow distance, as an engine reduces last frame's depth
+    /// buffer: exact at pixel centres, and a thousandth wider.
     #[must_use]
     pub fn visible_range(&self, subject: &Subject) -> DepthRange {
         let hits = Visible::draw(&subject.model, &self.camera, self.origin);

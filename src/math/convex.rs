@@ -5,9 +5,9 @@
 //! edge, whatever the rounding of the distances: the *combinatorics* are exact even where coordinates are rounded.
 //!
 //! Capacity. Cuts keep every vertex at degree three (a new vertex ends one cut edge and two edges of the new face), so
-//! 2E = 3V, and with Euler's V − E + F = 2 a body of F faces has V = 2F − 4 vertices and E = 3F − 6 edges, or fewer where
-//! faces have vanished. A frustum (6 faces) and a box (6) make at most 20 vertices; the shadow of a box adds at most 9
-//! faces, and a slice of it 2: 23 faces, 42 vertices, 63 edges.
+//! 2E = 3V, and with Euler's V − E + F = 2 a body of F faces has V = 2F − 4 vertices and E = 3F − 6 edges, or fewer
+//! where faces have vanished. A frustum (6 faces) and a box (6) make at most 20 vertices; the shadow of a box adds at
+//! most 9 faces, and a slice of it 2: 23 faces, 42 vertices, 63 edges.
 //!
 //! Vertices are homogeneous with w ≥ 0, so that a frustum without far plane is an ordinary body with four vertices at
 //! infinity.
@@ -255,7 +255,8 @@ mod tests {
         }
 
         /// Against brute force: a point of the cube is in the clipped body iff it is inside all planes; every vertex of
-        /// the body satisfies all planes; and the body's support in any direction is that of the brute-force vertex set.
+        /// the body satisfies all planes; and the body's support in any direction is that of the brute-force vertex
+        /// set.
         #[test]
         fn support_matches_brute_force(
             planes in prop::collection::vec((prop::array::uniform3(-1.0..1.0_f64), -0.6..1.0_f64), 0..9),

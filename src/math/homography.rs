@@ -1,8 +1,8 @@
 //! The one warp: a 2-D homography of strength κ, anchored on the top line of what it maps.
 //!
-//! Trapezoidal, light-space perspective and camera-space shadow maps and the uniform map are the same pencil of maps and
-//! differ only in κ. In the frame of [`WarpFrame`], u runs from the top line (u = 0, near) to the base line (u = λ, far) and
-//! c across it:
+//! Trapezoidal, light-space perspective and camera-space shadow maps and the uniform map are the same pencil of maps
+//! and differ only in κ. In the frame of [`WarpFrame`], u runs from the top line (u = 0, near) to the base line (u = λ,
+//! far) and c across it:
 //!
 //! ```text
 //! (1)  W = 1 + κ u
@@ -13,9 +13,9 @@
 //! (6)  n = d / (√(z1/z0) − 1)                  perspective errors at both ends of a range d are equal; κ = 1/n
 //! ```
 //!
-//! The top line goes to Y/W = 1, the base line to −1; W = 1 on the top line and k = 1 + κλ on the base line; κ is one over the
-//! distance from the centre of projection to the top line. κ = 0 is *exactly* affine: uniform maps need no special case.
-//! The sense of rotation is kept (determinant > 0).
+//! The top line goes to Y/W = 1, the base line to −1; W = 1 on the top line and k = 1 + κλ on the base line; κ is one
+//! over the distance from the centre of projection to the top line. κ = 0 is *exactly* affine: uniform maps need no
+//! special case. The sense of rotation is kept (determinant > 0).
 //!
 //! Everything here is total: nothing panics, nothing allocates, and numbers that are not finite give the uniform map.
 //!
@@ -28,16 +28,19 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Largest κλ, that is, k − 1 where k is the ratio of W (and of texel density along the sides) from top to base line.
 ///
-/// The strength of the 80 % rule grows like 4/d' as the focus nears the top line. At 0 every map is uniform. Without a limit, hardly
-/// a texel is left for what lies behind the top line, and rounding of f32 matrices (some 4e-4 texels of 2048 × k × distance
-/// from the origin over λ) shows. 1e3 keeps the optimal strengths of light-space perspective, √(far/near), up to 1e6.
+/// The strength of the 80 % rule grows like 4/d' as the focus nears the top line. At 0 every map is uniform. Without a
+/// limit, hardly a texel is left for what lies behind the top line, and rounding of f32 matrices (some 4e-4 texels of
+/// 2048 × k × distance from the origin over λ) shows. 1e3 keeps the optimal strengths of light-space perspective,
+/// √(far/near), up to 1e6.
 pub const STRONGEST: f64 = 1e3;
 
-/// Least width or extent of a map, as a share of its distance from the origin of coordinates and its size. At 0 flat hulls divide by
-/// zero; much above 1e-12 slim bodies would get a map wider than they are. 1e-12 is some thousand roundings of f64.
+/// Least width or extent of a map, as a share of its distance from the origin of coordinates and its size. At 0 flat
+/// hulls divide by zero; much above 1e-12 slim bodies would get a map wider than they are. 1e-12 is some thousand
+/// roundings of f64.
 const THINNEST: f64 = 1e-12;
 
-/// Least width or extent of a map in the units of the plane, where everything lies in the origin: products of four inverses stay finite.
+/// Least width or extent of a map in the units of the plane, where everything lies in the origin: products of four
+/// inverses stay finite.
 const SMALLEST: f64 = 1e-60;
 
 /// Coordinates from here on are treated as not finite: products of four stay finite.
@@ -66,8 +69,9 @@ pub struct WarpFrame {
 impl WarpFrame {
     /// The frame around `hull` whose centre line passes through `through` along `axis` (any length).
     ///
-    /// The top line touches the hull where u is least, the base line where it is greatest. Points that are not finite (or
-    /// beyond 1e60) are ignored; an axis without direction is +x; a hull without extent gets one, rounding wide. O(points).
+    /// The top line touches the hull where u is least, the base line where it is greatest. Points that are not finite
+    /// (or beyond 1e60) are ignored; an axis without direction is +x; a hull without extent gets one, rounding wide.
+    /// O(points).
     #[must_use]
     pub fn around(axis: DVec2, through: DVec2, hull: &[DVec2]) -> Self {
         // Axes may be so short that their squares underflow; one without direction becomes NaN here.
@@ -102,8 +106,8 @@ impl WarpFrame {
 
     /// Side lines (4): the least and greatest c/W over `hull`, at strength `kappa` (limited).
     ///
-    /// Exact: c/W is monotone along every line, so that its extremes over a convex hull are at vertices. Sides that coincide are moved
-    /// apart by a rounding. O(points).
+    /// Exact: c/W is monotone along every line, so that its extremes over a convex hull are at vertices. Sides that
+    /// coincide are moved apart by a rounding. O(points).
     #[must_use]
     pub fn sides(&self, kappa: f64, hull: &[DVec2]) -> [f64; 2] {
         let kappa = self.limited(kappa);
@@ -181,12 +185,12 @@ impl Homography {
 
 /// κ that takes the line at `focus` from the top to Y/W = `line`: equation (5), limited to 0 ≤ κλ ≤ [`STRONGEST`].
 ///
-/// `extent` is λ > 0, `focus` is d' in the same units, both measured from the *top line* (not from the near plane); `line` is ξ in
-/// (−1, 1): [`LINE_80_PERCENT`], [`LINE_HALF`], [`LINE_TWO_THIRDS`]. A focus at or beyond λ (1 − ξ)/2, where a uniform map already
-/// has the line, gives 0; a focus at or before the top line gives the limit. NaN gives 0.
+/// `extent` is λ > 0, `focus` is d' in the same units, both measured from the *top line* (not from the near plane);
+/// `line` is ξ in (−1, 1): [`LINE_80_PERCENT`], [`LINE_HALF`], [`LINE_TWO_THIRDS`]. A focus at or beyond λ (1 − ξ)/2,
+/// where a uniform map already has the line, gives 0; a focus at or before the top line gives the limit. NaN gives 0.
 ///
-/// Erratum TH-1: the thesis prints ξ = 1.6 for the 80 % line. With that the centre of projection is on the wrong side for every
-/// d' > 0; the line is y = 1 − 2 · 0.8 = −0.6.
+/// Erratum TH-1: the thesis prints ξ = 1.6 for the 80 % line. With that the centre of projection is on the wrong side
+/// for every d' > 0; the line is y = 1 − 2 · 0.8 = −0.6.
 #[must_use]
 pub fn kappa_for_line(extent: f64, focus: f64, line: f64) -> f64 {
     if focus.is_nan() || !(-1.0..1.0).contains(&line) {
@@ -209,11 +213,13 @@ pub fn limited(kappa: f64, extent: f64) -> f64 {
 
 /// n of light-space perspective, equation (6): equal perspective error at both ends of a range.
 ///
-/// `range` is d, the extent of the map along its axis in light space; `nearest` and `farthest` are the eye depths z0, z1 at its two
-/// ends. All in one unit, 0 < z0 < z1. κ = 1/n, anchored at the least u of the body; anything else gives ∞ (uniform).
+/// `range` is d, the extent of the map along its axis in light space; `nearest` and `farthest` are the eye depths z0,
+/// z1 at its two ends. All in one unit, 0 < z0 < z1. κ = 1/n, anchored at the least u of the body; anything else gives
+/// ∞ (uniform).
 ///
-/// Erratum SC-2: eq. (2) of Scherzer anchors the near plane at the eye plus `z_n` along the axis, which is the least u of the body
-/// only for light across the view; otherwise W ≤ 0 inside the body happens. [`WarpFrame`] anchors at the least u.
+/// Erratum SC-2: eq. (2) of Scherzer anchors the near plane at the eye plus `z_n` along the axis, which is the least u
+/// of the body only for light across the view; otherwise W ≤ 0 inside the body happens. [`WarpFrame`] anchors at the
+/// least u.
 #[must_use]
 pub fn n_opt(range: f64, nearest: f64, farthest: f64) -> f64 {
     positive_or_uniform(range / ((farthest / nearest).sqrt() - 1.0))
@@ -221,8 +227,9 @@ pub fn n_opt(range: f64, nearest: f64, farthest: f64) -> f64 {
 
 /// n of light-space perspective for directional light: (`z_n` + √(`z_n` `z_f`)) / sin γ with `z_f` = `z_n` + d sin γ.
 ///
-/// `range` is d in light space, `sin_gamma` the sine of the angle between light and view direction. The same as [`n_opt`] with
-/// z1 = z0 + d sin γ. Worse than uniform where γ is less than half the field of view: a matter for the caller.
+/// `range` is d in light space, `sin_gamma` the sine of the angle between light and view direction. The same as
+/// [`n_opt`] with z1 = z0 + d sin γ. Worse than uniform where γ is less than half the field of view: a matter for the
+/// caller.
 #[must_use]
 pub fn n_opt_directional(near: f64, range: f64, sin_gamma: f64) -> f64 {
     n_opt_eye_range(near, range * sin_gamma, sin_gamma)
@@ -230,18 +237,20 @@ pub fn n_opt_directional(near: f64, range: f64, sin_gamma: f64) -> f64 {
 
 /// Scherzer's eq. (1): (`z_n` + √(`z_n` (`z_n` + Δz))) / sin γ, with Δz a range of *eye depth*.
 ///
-/// Erratum SC-1: the text calls Δz the "depth extent of B in light space", which is d; the formula is right only for
-/// Δz = `z_f` − `z_n` = d sin γ. Published code differs in just these arguments: the 2004 demo passes near / sin γ and d sin γ; the
-/// 2006 demo's older function passes the eye range times sin γ, a sine too many.
+/// Erratum SC-1: the text calls Δz the "depth extent of B in light space", which is d; the formula is right only for Δz
+/// = `z_f` − `z_n` = d sin γ. Published code differs in just these arguments: the 2004 demo passes near / sin γ and d
+/// sin γ; the 2006 demo's older function passes the eye range times sin γ, a sine too many.
 #[must_use]
 pub fn n_opt_eye_range(near: f64, eye_range: f64, sin_gamma: f64) -> f64 {
     positive_or_uniform((near + (near * (near + eye_range)).sqrt()) / sin_gamma)
 }
 
-/// Ogre's default: a tenth of near + √(near far), a warp ten times stronger than equal errors call for; 0 there means uniform.
+/// Ogre's default: a tenth of near + √(near far), a warp ten times stronger than equal errors call for; 0 there means
+/// uniform.
 #[must_use]
 pub fn n_opt_simple(near: f64, far: f64) -> f64 {
-    /// Ogre's factor; at 1 it is the optimum for light across the view, at 0 the centre of projection is on the near plane.
+    /// Ogre's factor; at 1 it is the optimum for light across the view, at 0 the centre of projection is on the near
+    /// plane.
     const FACTOR: f64 = 0.1;
     positive_or_uniform(FACTOR * (near + (near * far).sqrt()))
 }
@@ -339,7 +348,8 @@ mod tests {
         }
     }
 
-    /// A view that leaves the light by 1e-161 radians has a direction, whose square underflows: the axis came out too long by a tenth.
+    /// A view that leaves the light by 1e-161 radians has a direction, whose square underflows: the axis came out too
+    /// long by a tenth.
     #[test]
     fn short_axes_are_directions() {
         for log in [-320, -161, 0, 161, 300] {

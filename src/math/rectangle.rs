@@ -1,29 +1,32 @@
 //! The smallest rectangle around points of the plane.
 //!
 //! # References
-//! - Freeman & Shapira, *Determining the minimum-area encasing rectangle for an arbitrary closed curve*, 1975: one side of
-//!   the smallest rectangle lies on an edge of the convex hull.
+//! - Freeman & Shapira, *Determining the minimum-area encasing rectangle for an arbitrary closed curve*, 1975: one side
+//!   of the smallest rectangle lies on an edge of the convex hull.
 //! - Andrew, *Another efficient algorithm for convex hulls in two dimensions*, 1979: the monotone chain.
 
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-/// How much larger than the least a rectangle is when it still has 1/e of its weight, as a share of the least area. At 0 the axis jumps from
-/// edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis wanders. Measured on camera paths: at 0.03 two
-/// in a thousand turn by tens of texels at once and rectangles are 0.1 % above the least in the median, at 0.05 none does and they
-/// are 0.8 % above it, at 0.1 3.4 %.
+/// How much larger than the least a rectangle is when it still has 1/e of its weight, as a share of the least area. At
+/// 0 the axis jumps from edge to edge as the smallest rectangle does; at 1 every direction weighs alike, and the axis
+/// wanders. Measured on camera paths: at 0.03 two in a thousand turn by tens of texels at once and rectangles are 0.1 %
+/// above the least in the median, at 0.05 none does and they are 0.8 % above it, at 0.1 3.4 %.
 const SOFTNESS: f64 = 0.05;
 
-/// Logarithm of the least vote that counts: e^−40 is less than a rounding of f64. Nearer to 0 edges would come and go with a jump.
+/// Logarithm of the least vote that counts: e^−40 is less than a rounding of f64. Nearer to 0 edges would come and go
+/// with a jump.
 const LEAST_VOTE: f64 = -40.0;
 
-/// Axis (unit) of a rectangle around `points` that is nearly the smallest, and turns continuously with them; `None` when they have no area.
+/// Axis (unit) of a rectangle around `points` that is nearly the smallest, and turns continuously with them; `None`
+/// when they have no area.
 ///
-/// Every edge of the hull votes for its direction, by its length and by how small its rectangle is. Rectangles repeat every quarter turn, so that
-/// votes are cast on a circle that goes around four times as fast: φ = ¼ arg Σ lᵢ exp(−(Aᵢ/A − 1)/softness) exp(4 i φᵢ). Edges come and go with
-/// no length, and the least area is continuous, and so is the sum; its direction is wherever it is not zero (two rectangles equally small,
-/// exactly half of a quarter apart). Kind of promise: typical, a per cent or two above the least area.
-/// Time O(n log n + h²) for h hull vertices; no allocation. `CAP` must hold all points.
+/// Every edge of the hull votes for its direction, by its length and by how small its rectangle is. Rectangles repeat
+/// every quarter turn, so that votes are cast on a circle that goes around four times as fast: φ = ¼ arg Σ lᵢ
+/// exp(−(Aᵢ/A − 1)/softness) exp(4 i φᵢ). Edges come and go with no length, and the least area is continuous, and so is
+/// the sum; its direction is wherever it is not zero (two rectangles equally small, exactly half of a quarter apart).
+/// Kind of promise: typical, a per cent or two above the least area. Time O(n log n + h²) for h hull vertices; no
+/// allocation. `CAP` must hold all points.
 pub(crate) fn steady_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>) -> Option<DVec2> {
     let hull = hull::<CAP>(points);
     if hull.len() < 3 {
@@ -106,7 +109,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Axis (unit) of the rectangle of least area around `points`; `None` when they have no area (fewer than three corners).
+    /// Axis (unit) of the rectangle of least area around `points`; `None` when they have no area (fewer than three
+    /// corners).
     ///
     /// Exact up to rounding. Time O(n log n + h²) for h hull vertices; no allocation. `CAP` must hold all points.
     fn least_area_axis<const CAP: usize>(points: impl Iterator<Item = DVec2>) -> Option<DVec2> {
@@ -163,7 +167,8 @@ mod tests {
             }
         }
 
-        /// A square that turns is followed; one that is stretched out of another by little steps never makes the axis jump.
+        /// A square that turns is followed; one that is stretched out of another by little steps never makes the axis
+        /// jump.
         #[test]
         fn a_steady_rectangle_turns_steadily(angle in 0.0..1.5_f64, aspect in 0.1..0.9_f64) {
             let corners = |angle: f64, aspect: f64| {

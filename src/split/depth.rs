@@ -7,13 +7,15 @@
 //! (4)  equal error  the C_i of the least sum over slices of (texels' size in the world × what is seen there)
 //! ```
 //!
-//! (2) makes every slice as many times as deep as the one before, and with it the worst perspective error equal in all of them; where near
-//! and far are far apart it spends most maps on what hardly fills the picture. (3) is the compromise of the papers.
+//! (2) makes every slice as many times as deep as the one before, and with it the worst perspective error equal in all
+//! of them; where near and far are far apart it spends most maps on what hardly fills the picture. (3) is the
+//! compromise of the papers.
 //!
 //! # Where this differs from print
-//! - TH-10: the thesis adds b to all planes, 0 ≤ i ≤ m; that moves the ends of the range. Here it moves interior planes only, and no
-//!   further than their neighbours.
-//! - TH-11: "logarithmic over-samples near, under-samples far": it equalises perspective error. What it wastes is maps, on tiny slices.
+//! - TH-10: the thesis adds b to all planes, 0 ≤ i ≤ m; that moves the ends of the range. Here it moves interior planes
+//!   only, and no further than their neighbours.
+//! - TH-11: "logarithmic over-samples near, under-samples far": it equalises perspective error. What it wastes is maps,
+//!   on tiny slices.
 //!
 //! # References
 //! - Zhang, Sun, Xu & Lu, *Parallel-split shadow maps for large-scale virtual environments*, 2006: (1) to (3), λ = ½.
@@ -46,12 +48,14 @@ pub struct DepthSplits {
     pub scheme: Scheme,
     /// How receivers find their map.
     pub select: Select,
-    /// Share of a slice, from its far end, over which it gives way to the next one, 0 (a hard edge) to 0.5. Costs a second lookup there.
+    /// Share of a slice, from its far end, over which it gives way to the next one, 0 (a hard edge) to 0.5. Costs a
+    /// second lookup there.
     pub blend: f32,
-    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth. Found by depth
-    /// only.
+    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth. Found
+    /// by depth only.
     pub fade: bool,
-    /// Pixels that a texel may measure for more maps not to pay, 0 (use all of them) to 16. Shadow edges are off by half of it.
+    /// Pixels that a texel may measure for more maps not to pay, 0 (use all of them) to 16. Shadow edges are off by
+    /// half of it.
     pub enough: f32,
 }
 
@@ -70,8 +74,8 @@ pub enum Scheme {
         /// b, world units, ±1e15: moves all planes between slices.
         offset: f32,
     },
-    /// Eye depths of the planes between slices, world units, ascending; as many as there are maps, less one, are read. Planes outside of what
-    /// is in view are left out with their slices.
+    /// Eye depths of the planes between slices, world units, ascending; as many as there are maps, less one, are read.
+    /// Planes outside of what is in view are left out with their slices.
     Manual([f32; MAX_VIEWS - 1]),
     /// (4): where the predicted picture error is least.
     EqualError,
@@ -88,8 +92,8 @@ impl DepthSplits {
     pub const DEFAULT: Self =
         Self { maps: 4, scheme: Scheme::EqualError, select: Select::Finest, blend: 0.0, fade: false, enough: 0.25 };
 
-    /// As many maps as there are depths, and one more: `planes` are the eye depths between them, world units, ascending. At most seven are
-    /// read.
+    /// As many maps as there are depths, and one more: `planes` are the eye depths between them, world units,
+    /// ascending. At most seven are read.
     #[must_use]
     pub fn manual(planes: &[f32]) -> Self {
         let mut depths = [f32::INFINITY; MAX_VIEWS - 1];
@@ -98,11 +102,13 @@ impl DepthSplits {
         Self { maps: read as u8 + 1, scheme: Scheme::Manual(depths), ..Self::default() }
     }
 
-    /// The first map ends at eye depth `first`, the last one at `far`, and each map between them is as many times as deep as the one
-    /// before: `first (far/first)^(i/(maps − 1))`. Numbers that are not 0 < first ≤ far give planes that `fit` refuses.
+    /// The first map ends at eye depth `first`, the last one at `far`, and each map between them is as many times as
+    /// deep as the one before: `first (far/first)^(i/(maps − 1))`. Numbers that are not 0 < first ≤ far give planes
+    /// that `fit` refuses.
     ///
-    /// Bevy's cascades are `exponential(4, 10.0, 150.0)` with `select: Select::Depth`, `blend: 0.2` (of a cascade's length here, of its far end
-    /// there), `enough: 0.0`, [`Stabilise::SnapTexels`](crate::Stabilise::SnapTexels), and a `visible_depth` of 0.1 to 150.
+    /// Bevy's cascades are `exponential(4, 10.0, 150.0)` with `select: Select::Depth`, `blend: 0.2` (of a cascade's
+    /// length here, of its far end there), `enough: 0.0`, [`Stabilise::SnapTexels`](crate::Stabilise::SnapTexels), and
+    /// a `visible_depth` of 0.1 to 150.
     #[must_use]
     pub fn exponential(maps: u8, first: f32, far: f32) -> Self {
         let between = maps.clamp(1, MAX_VIEWS as u8) - 1;
@@ -150,10 +156,11 @@ impl DepthSplits {
     }
 }
 
-/// The planes of `maps` slices of the range, ascending, ends included: one more than there are slices. `None` for schemes
-/// that need more than the range.
+/// The planes of `maps` slices of the range, ascending, ends included: one more than there are slices. `None` for
+/// schemes that need more than the range.
 ///
-/// Kind of promise: exact up to rounding; ascending for every range with near ≤ far. Depths of zero or below have no logarithm: (1) there.
+/// Kind of promise: exact up to rounding; ascending for every range with near ≤ far. Depths of zero or below have no
+/// logarithm: (1) there.
 #[must_use]
 pub fn planes(scheme: &Scheme, maps: u8, near: f64, far: f64) -> Option<ArrayVec<f64, MAX_PLANES>> {
     let maps = maps.clamp(1, MAX_VIEWS as u8);

@@ -1,8 +1,8 @@
 //! Split depths of the least predicted picture error.
 //!
-//! A map of a fixed number of texels has texels as large as what it covers, and a shadow edge is displaced by about half of one (see
-//! `warp::least_error`). What a picture gets wrong is then the sum over slices of their extent across the light times what is seen
-//! in them:
+//! A map of a fixed number of texels has texels as large as what it covers, and a shadow edge is displaced by about
+//! half of one (see `warp::least_error`). What a picture gets wrong is then the sum over slices of their extent across
+//! the light times what is seen in them:
 //!
 //! ```text
 //! (1)  E(C) = Σ_i s(C_i, C_i+1) T(C_i, C_i+1)
@@ -10,12 +10,13 @@
 //! (3)  s: share of the samples of what is seen; without any, of the logarithm of depth
 //! ```
 //!
-//! Moving one plane changes two summands, and each plane in turn is moved to where their sum is least, a few times over. The planes follow
-//! the camera continuously as long as the valley they are in does.
+//! Moving one plane changes two summands, and each plane in turn is moved to where their sum is least, a few times
+//! over. The planes follow the camera continuously as long as the valley they are in does.
 //!
 //! # References
 //! - Lauritzen, Salvi & Lefohn, *Sample distribution shadow maps*, 2011: splits from what is seen.
-//! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: error of splits in one dimension.
+//! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: error of splits in one
+//!   dimension.
 
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -28,7 +29,8 @@ use crate::scene::DepthRange;
 /// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
 const START: f32 = 0.75;
 
-/// How often every plane is moved. Once leaves planes that moved before their neighbours did; more than four move nothing.
+/// How often every plane is moved. Once leaves planes that moved before their neighbours did; more than four move
+/// nothing.
 const SWEEPS: u32 = 3;
 
 /// Steps of each search: each leaves 62 % of the interval, eight leave 2 % of it.
@@ -73,7 +75,8 @@ pub(crate) fn planes(
     planes
 }
 
-/// The place of the least cost between two depths, by golden section; even steps are even steps of logarithmic depth where there is one.
+/// The place of the least cost between two depths, by golden section; even steps are even steps of logarithmic depth
+/// where there is one.
 fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     let ratio = if low > 0.0 { (high / low).ln() } else { 0.0 };
     let at = |share: f64| if ratio > 0.0 { low * (ratio * share).exp() } else { low + (high - low) * share };

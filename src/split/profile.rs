@@ -1,7 +1,8 @@
 //! How wide slices of a body are, as the light sees them: what decides the size of their texels.
 //!
 //! # References
-//! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: texels by what a map has to cover.
+//! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: texels by what a map has
+//!   to cover.
 
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3, Vec3Swizzles};
@@ -11,7 +12,8 @@ use crate::focus::FocusBody;
 use crate::light_space::LightSpace;
 use crate::math::convex::MAX_EDGES;
 
-/// The edges of a body, each as eye depth, place along the view and place across it, of both ends, the nearer one first.
+/// The edges of a body, each as eye depth, place along the view and place across it, of both ends, the nearer one
+/// first.
 pub(crate) struct Profile {
     edges: ArrayVec<[DVec3; 2], MAX_EDGES>,
 }
@@ -28,7 +30,8 @@ impl Profile {
         Self { edges: body.edges().map(|ends| ordered(ends.map(place))).collect() }
     }
 
-    /// Width and height across the light, together, of the slice between two eye depths; 0 where there is nothing. O(edges).
+    /// Width and height across the light, together, of the slice between two eye depths; 0 where there is nothing.
+    /// O(edges).
     pub(crate) fn size(&self, near: f64, far: f64) -> f64 {
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;

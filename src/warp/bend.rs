@@ -1,8 +1,8 @@
 //! The projective part of a map, apart from its window: `W = 1 + g · (x − o)`.
 //!
-//! Every warp of this crate bends the plane across the light by one such W and then lays a rectangle around what it has bent. The
-//! strength is the vector g, so that it vanishes where it is short, whatever its direction: nothing jumps where a published
-//! warp has no direction (view along the light). g = 0 is exactly the uniform map.
+//! Every warp of this crate bends the plane across the light by one such W and then lays a rectangle around what it has
+//! bent. The strength is the vector g, so that it vanishes where it is short, whatever its direction: nothing jumps
+//! where a published warp has no direction (view along the light). g = 0 is exactly the uniform map.
 //!
 //! # References
 //! - `MATH.md` section 0, with g = κ â and o on the top line: the sides of the rectangle along â give the closed form.
@@ -20,8 +20,9 @@ pub(crate) struct Bend {
     pub(crate) anchor: DVec2,
 }
 
-/// Roundings of f64 in a bent coordinate: products with g and o (2), their sums (2), and as many in the rows of a matrix. Fewer can leave
-/// the body's vertices outside; more costs texels only where the bent body is as small as rounding.
+/// Roundings of f64 in a bent coordinate: products with g and o (2), their sums (2), and as many in the rows of a
+/// matrix. Fewer can leave the body's vertices outside; more costs texels only where the bent body is as small as
+/// rounding.
 pub(crate) const ROUNDINGS: f64 = 8.0;
 
 impl Bend {
@@ -58,14 +59,16 @@ impl Bend {
         (at + self.anchor * (w - 1.0)) / w
     }
 
-    /// What goes to a bent point; the inverse of [`bent`](Self::bent). Finite before the horizon, `gradient · (bent − anchor) < 1`.
+    /// What goes to a bent point; the inverse of [`bent`](Self::bent). Finite before the horizon, `gradient · (bent −
+    /// anchor) < 1`.
     pub(crate) fn unbent(&self, bent: DVec2) -> DVec2 {
         let from_anchor = bent - self.anchor;
         let w = 1.0 / (1.0 - self.gradient.dot(from_anchor));
         (bent - self.anchor * (1.0 - 1.0 / w)) * w
     }
 
-    /// How far a box of half size `margin` around a point reaches once it is bent, to first order in each axis, and what f64 loses of it.
+    /// How far a box of half size `margin` around a point reaches once it is bent, to first order in each axis, and
+    /// what f64 loses of it.
     pub(crate) fn reach(&self, at: DVec2, margin: f64) -> DVec2 {
         if self.is_none() {
             return DVec2::splat(margin);

@@ -1,9 +1,9 @@
 //! The predicted picture error of a warp, as a function of its strength, and the strength at which it is least.
 //!
-//! A shadow edge is displaced by about half a texel, so that the pixels it gets wrong are its length in the picture times the size of a
-//! texel in pixels. The denser edges are in the world, the more of them a pixel holds: with depth their number in a pixel grows as their
-//! displacement in pixels shrinks, and what is left is the size of a texel in the *world*, averaged over the picture. W is linear in
-//! space, so that this mean needs two moments of what is seen:
+//! A shadow edge is displaced by about half a texel, so that the pixels it gets wrong are its length in the picture
+//! times the size of a texel in pixels. The denser edges are in the world, the more of them a pixel holds: with depth
+//! their number in a pixel grows as their displacement in pixels shrinks, and what is left is the size of a texel in
+//! the *world*, averaged over the picture. W is linear in space, so that this mean needs two moments of what is seen:
 //!
 //! ```text
 //! (1)  E(κ) = (a1 − a0) ⟨W⟩ + λ/k √(1 + κ² m) ⟨W²⟩,   W = 1 + κu,  k = 1 + κλ,  m = (a0² + a0 a1 + a1²)/3
@@ -11,17 +11,18 @@
 //! (3)  reluctance: E(κ) is made dearer by 0.2 κλ / (1 + κλ)
 //! ```
 //!
-//! The first summand of (1) is the side of a texel across the axis, the second the one along it, which slants with the side lines. The
-//! first sum of (2) takes shadow edges to be anywhere along every ray of the picture that the body allows; the second one takes them to be
-//! where the engine says that surfaces are seen. An evaluation costs the side lines; the moments are taken once.
+//! The first summand of (1) is the side of a texel across the axis, the second the one along it, which slants with the
+//! side lines. The first sum of (2) takes shadow edges to be anywhere along every ray of the picture that the body
+//! allows; the second one takes them to be where the engine says that surfaces are seen. An evaluation costs the side
+//! lines; the moments are taken once.
 //!
-//! Kind of promise: typical. `docs/WARPS.md` has the strength of least E beside the best one of a sweep, on many scenes:
-//! mostly within a tenth of its error, and what the exceptions are.
+//! Kind of promise: typical. `docs/WARPS.md` has the strength of least E beside the best one of a sweep, on many
+//! scenes: mostly within a tenth of its error, and what the exceptions are.
 //!
 //! # References
 //! - `MATH.md` section 0 (the closed form), section 8 (texels in the picture).
-//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: errors of warps by storage and by maximum,
-//!   which this mean replaces.
+//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: errors of warps by
+//!   storage and by maximum, which this mean replaces.
 
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
@@ -34,12 +35,14 @@ use crate::focus::FocusBody;
 use crate::math::convex::MAX_VERTICES;
 use crate::math::homography::WarpFrame;
 
-/// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples than move the result.
-/// Measured: a few hundred samples should decide nearly alone; the body remains for what they have not seen.
+/// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples
+/// than move the result. Measured: a few hundred samples should decide nearly alone; the body remains for what they
+/// have not seen.
 const ENOUGH_SAMPLES: f64 = 8.0;
 
-/// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per cent, strengths too strong
-/// by half cost twice that. Measured: 0.2 gives away nothing in the mean, and the pictures that come out worse than uniform are half as many.
+/// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per
+/// cent, strengths too strong by half cost twice that. Measured: 0.2 gives away nothing in the mean, and the pictures
+/// that come out worse than uniform are half as many.
 const RELUCTANCE: f64 = 0.2;
 
 /// Points whose side lines are looked at together: processors divide two or four numbers at a time.
@@ -96,8 +99,9 @@ impl Seen {
         }
     }
 
-    /// The direction in which W has to grow to be small where things are seen: from their mean to the middle of the body. Not
-    /// normalised; it vanishes where no direction is better than another, and there a warp along it does no good.
+    /// The direction in which W has to grow to be small where things are seen: from their mean to the middle of the
+    /// body. Not normalised; it vanishes where no direction is better than another, and there a warp along it does no
+    /// good.
     pub(crate) fn axis(&self, sight: &Sight) -> DVec2 {
         sight.middle() - (self.mean + sight.eye)
     }

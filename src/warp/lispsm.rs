@@ -1,4 +1,5 @@
-//! Light-space perspective shadow maps: the strength at which perspective errors are equal at both ends of what is in view.
+//! Light-space perspective shadow maps: the strength at which perspective errors are equal at both ends of what is in
+//! view.
 //!
 //! ```text
 //! n_opt = (z_n + √(z_n (z_n + Δz))) / sin γ,   κ = 1 / n_opt,   anchored at the body's least u along V_P
@@ -6,8 +7,8 @@
 //!
 //! # Where this differs from print
 //! - SC-1: Δz is a range of *eye depth*, `z_f − z_n`; the text calls it the "depth extent of B in light space".
-//! - SC-2: eq. (2) anchors P's near plane at the eye plus `z_n V_P`, which is the body's least u for light across the view only; here
-//!   the anchor is the body's own least u, so that W ≥ 1 on it.
+//! - SC-2: eq. (2) anchors P's near plane at the eye plus `z_n V_P`, which is the body's least u for light across the
+//!   view only; here the anchor is the body's own least u, so that W ≥ 1 on it.
 //! - Where γ is less than half the field of view the formula is worse than uniform: the guard's business.
 //!
 //! # References

@@ -5,12 +5,13 @@
 //! (2)  M_s(κ) = max (a1 − a0) W / ζ           a texel across it
 //! ```
 //!
-//! Both maxima are at vertices of the body exactly: W²/ζ is convex and W/ζ quasi-linear along every line. One number bounds the whole
-//! picture; what it does to the mean of the picture is another matter (`docs/WARPS.md`).
+//! Both maxima are at vertices of the body exactly: W²/ζ is convex and W/ζ quasi-linear along every line. One number
+//! bounds the whole picture; what it does to the mean of the picture is another matter (`docs/WARPS.md`).
 //!
 //! # References
 //! - `MATH.md` section 2, the table and its algorithm; section 10 row 25.
-//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: storage and worst error.
+//! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: storage and worst
+//!   error.
 
 use super::search::least;
 use super::sight::{Choice, Sight};
@@ -52,8 +53,8 @@ mod tests {
         Sight::of(camera, travel, &corners, DVec3::ZERO)
     }
 
-    /// `MATH.md` section 10 row 25, section 2: 60°, square, far/near 100 and 1000; n is 1/κ, M in units of 1/ζ for one texel over the
-    /// map. `None`: uniform is best.
+    /// `MATH.md` section 10 row 25, section 2: 60°, square, far/near 100 and 1000; n is 1/κ, M in units of 1/ζ for one
+    /// texel over the map. `None`: uniform is best.
     #[test]
     fn golden_values() {
         for (far, degrees, n, least, digits) in [

@@ -26,8 +26,9 @@ pub enum Warp {
     Uniform,
     /// Uniform over what is in view.
     Focused,
-    /// Warped along the view by a strength given by hand: κλ, the ratio of texel densities from the near to the far side of what is in
-    /// view, less one. 0 is focused; 0 to 1000. For experiments: the strength that pays differs from view to view.
+    /// Warped along the view by a strength given by hand: κλ, the ratio of texel densities from the near to the far
+    /// side of what is in view, less one. 0 is focused; 0 to 1000. For experiments: the strength that pays differs from
+    /// view to view.
     Fixed {
         /// κλ.
         strength: f32,
@@ -41,8 +42,8 @@ pub enum Warp {
     LightSpacePerspective,
     /// Perspective: as the light sees the camera's post-perspective space (Stamminger & Drettakis 2002).
     Perspective {
-        /// How far the virtual eye stands behind the eye, world units, 0 to 1e15: more is weaker. Casters behind the eye need none, because depth is kept
-        /// linear.
+        /// How far the virtual eye stands behind the eye, world units, 0 to 1e15: more is weaker. Casters behind the
+        /// eye need none, because depth is kept linear.
         pull_back: f32,
     },
     /// The strength with the least *worst* footprint over what is in view.

@@ -1,21 +1,21 @@
 //! Perspective shadow maps: the map as the light sees the scene in the camera's post-perspective space.
 //!
-//! There directional light is a point ℓ' = M (L, 0) on the plane z = f/(f − n), and the map a view from it of the unit cube. In the
-//! form with strength, which has no singularity when the light crosses the eye plane (ℓ'_w = 0):
+//! There directional light is a point ℓ' = M (L, 0) on the plane z = f/(f − n), and the map a view from it of the unit
+//! cube. In the form with strength, which has no singularity when the light crosses the eye plane (ℓ'_w = 0):
 //!
 //! ```text
 //! (1)  a = (ℓ'_xyz − ℓ'_w g) / |ℓ'_xyz − ℓ'_w g|,   κ' = ℓ'_w / |ℓ'_xyz − ℓ'_w g|,   g the centre of the cube
 //! (2)  W = w (1 − κ' (x/w − g) · a)                  (x, w) = M (p, 1)
 //! ```
 //!
-//! κ' < 0 is the inverted light (behind the viewer): W stays what it is, and depth, which is kept apart, keeps its order. W is linear in
-//! space and does not change along the light, so that it is *the* warp of this crate with another strength and axis; what remains of the
-//! perspective map is affine, and is fitted to the body like every other.
+//! κ' < 0 is the inverted light (behind the viewer): W stays what it is, and depth, which is kept apart, keeps its
+//! order. W is linear in space and does not change along the light, so that it is *the* warp of this crate with another
+//! strength and axis; what remains of the perspective map is affine, and is fitted to the body like every other.
 //!
 //! # Where this differs from print
 //! - TH-8, TH-9: M and L' multiply in the order of column vectors, and a vertex goes through L', not its inverse.
-//! - Depth is linear along the light, so that casters behind the eye need no pull-back to keep their order. `pull_back` is the
-//!   paper's means to weaken the warp.
+//! - Depth is linear along the light, so that casters behind the eye need no pull-back to keep their order. `pull_back`
+//!   is the paper's means to weaken the warp.
 //!
 //! # References
 //! - Stamminger & Drettakis, *Perspective shadow maps*, 2002.
@@ -39,8 +39,8 @@ pub fn post_perspective_light(sides: [f64; 4], near: f64, far: f64, towards: DVe
 
 /// Rows of M over view space: a frustum (left, right, down, up tangents) to the cube [−1, 1]² × [0, 1].
 ///
-/// The frustum begins `near` before the eye, is `depth` long, and its apex is `back` behind the eye; written so that nothing cancels
-/// where `back` is far larger than the frustum.
+/// The frustum begins `near` before the eye, is `depth` long, and its apex is `back` behind the eye; written so that
+/// nothing cancels where `back` is far larger than the frustum.
 fn camera_rows([left, right, down, up]: [f64; 4], near: f64, depth: f64, back: f64) -> [DVec4; 4] {
     let (width, height) = (right - left, up - down);
     let (aside, above) = ((right + left) / width, (up + down) / height);
@@ -56,8 +56,8 @@ fn camera_rows([left, right, down, up]: [f64; 4], near: f64, depth: f64, back: f
 /// Centre of the cube.
 const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 0.5);
 
-/// The published warp of what is in view, the eye pulled back by `pull_back` world units (not negative). Uniform for orthographic
-/// cameras, whose post-perspective space is affine.
+/// The published warp of what is in view, the eye pulled back by `pull_back` world units (not negative). Uniform for
+/// orthographic cameras, whose post-perspective space is affine.
 pub(crate) fn choose(camera: &Camera, sight: &Sight, pull_back: f64) -> Choice {
     let uniform = Choice { frame: sight.frame, strength: 0.0 };
     let Projection::Perspective { left, right, down, up, .. } = camera.projection else { return uniform };

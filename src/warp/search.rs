@@ -7,7 +7,8 @@
 /// The golden ratio less one.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Strengths are searched as κλ/(1 + κλ), from 0 (none) to 1 (endless): even steps of that are even steps of what they do to a map.
+/// Strengths are searched as κλ/(1 + κλ), from 0 (none) to 1 (endless): even steps of that are even steps of what they
+/// do to a map.
 fn share_of(strength: f64) -> f64 {
     strength / (1.0 + strength)
 }
@@ -16,8 +17,8 @@ fn strength_of(share: f64) -> f64 {
     share / (1.0 - share)
 }
 
-/// Steps: each leaves 62 % of the interval. 26 leave 4e-6 of it, which moves no map of 16384 texels by one. Fewer show as steps of the
-/// map when the camera moves; more are lost in the rounding of errors that are flat at the bottom.
+/// Steps: each leaves 62 % of the interval. 26 leave 4e-6 of it, which moves no map of 16384 texels by one. Fewer show
+/// as steps of the map when the camera moves; more are lost in the rounding of errors that are flat at the bottom.
 const STEPS: u32 = 26;
 
 /// κλ in [0, `limit`] of the least error; 0 where no strength is better than none.
@@ -45,21 +46,23 @@ pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
     if error(best) < error(0.0) { best } else { 0.0 }
 }
 
-/// Most steps in [`not_worse`]: false position with the remedy of Anderson and Björck takes half as many as a rule. Fewer would stop short of
-/// the strength that is allowed where errors are far from straight; more is never needed.
+/// Most steps in [`not_worse`]: false position with the remedy of Anderson and Björck takes half as many as a rule.
+/// Fewer would stop short of the strength that is allowed where errors are far from straight; more is never needed.
 const FALSE_POSITIONS: u32 = 14;
 
-/// The strength itself where `error` is at most that of none; else the largest below it where that holds, or a little less.
+/// The strength itself where `error` is at most that of none; else the largest below it where that holds, or a little
+/// less.
 ///
-/// Continuous wherever `error` is and has one valley: that strength goes to 0 as the valley does. At most 17 evaluations.
+/// Continuous wherever `error` is and has one valley: that strength goes to 0 as the valley does. At most 17
+/// evaluations.
 pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     let uniform = error(0.0);
     let last = error(strength);
     if !(last > uniform) {
         return strength;
     }
-    // The mean slope from 0: unlike the difference itself, it is not zero at 0 again, and over shares it is nearly straight. A little is
-    // added, so that what is as good as zero is no worse than none.
+    // The mean slope from 0: unlike the difference itself, it is not zero at 0 again, and over shares it is nearly
+    // straight. A little is added, so that what is as good as zero is no worse than none.
     let slope_of = |strength: f64, error: f64| (error - uniform) / strength + CLOSE * uniform / (1.0 + strength);
     let slope = |share: f64| slope_of(strength_of(share), error(strength_of(share)));
     let mut high = (share_of(strength), slope_of(strength, last));
@@ -90,11 +93,12 @@ pub(crate) fn not_worse(strength: f64, error: impl Fn(f64) -> f64) -> f64 {
     strength_of(low.0)
 }
 
-/// When an error is as good as that of no warp, as a share of it. Smaller costs evaluations; at 1e-4 maps would show where the search ends.
+/// When an error is as good as that of no warp, as a share of it. Smaller costs evaluations; at 1e-4 maps would show
+/// where the search ends.
 const CLOSE: f64 = 1e-6;
 
-/// Where a valley is looked for, as a share of κλ/(1 + κλ): a valley that is over before is treated as none. Larger misses shallow
-/// valleys, smaller sees nothing but rounding.
+/// Where a valley is looked for, as a share of κλ/(1 + κλ): a valley that is over before is treated as none. Larger
+/// misses shallow valleys, smaller sees nothing but rounding.
 const FIRST_STEP: f64 = 1.0 / 1024.0;
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A sheaf of rays through the picture, and where each of them is inside a body.
 //!
-//! A wall of the body, `n · x + w ≥ 0`, along a ray `x = start + direction ζ`, over one parameter t for which its coefficient is the same
-//! for all rays, so that a division a wall serves the whole sheaf:
+//! A wall of the body, `n · x + w ≥ 0`, along a ray `x = start + direction ζ`, over one parameter t for which its
+//! coefficient is the same for all rays, so that a division a wall serves the whole sheaf:
 //!
 //! ```text
 //! (1)  perspective:    (n · eye + w) t + n · direction ≥ 0,       t = 1/ζ
@@ -11,15 +11,16 @@
 //! The second summand is affine over the picture.
 //!
 //! # References
-//! - Cyrus & Beck, *Generalized two- and three-dimensional clipping*, 1978: a line against one half-space after the other.
+//! - Cyrus & Beck, *Generalized two- and three-dimensional clipping*, 1978: a line against one half-space after the
+//!   other.
 
 use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
 use crate::focus::FocusBody;
 
-/// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen strength by a
-/// hundredth and cost a microsecond; half as many make it jump where a ray leaves the body.
+/// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen
+/// strength by a hundredth and cost a microsecond; half as many make it jump where a ray leaves the body.
 const RAYS: [usize; 2] = [6, 4];
 
 /// Rays of the sheaf.
@@ -101,8 +102,8 @@ impl Sheaf {
         }
     }
 
-    /// The spans of eye depth inside the body, as lines across the light: both ends relative to the eye, and the length.
-    /// Rays that miss the body are left out.
+    /// The spans of eye depth inside the body, as lines across the light: both ends relative to the eye, and the
+    /// length. Rays that miss the body are left out.
     pub(crate) fn spans(&self, across: impl Fn(DVec3) -> DVec2) -> impl Iterator<Item = ([DVec2; 2], f64)> {
         let first = self.first.map(&across);
         let steps = self.steps.map(|step| step.map(&across));

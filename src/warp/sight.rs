@@ -35,8 +35,8 @@ pub(crate) struct Sight {
     pub(crate) pixel: [f64; 2],
     /// The view direction in (p, q): its length is the sine of the angle between light and view.
     pub(crate) view: DVec2,
-    /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest. The centre line passes through
-    /// the eye, as in the papers.
+    /// The frame of a warp along the view: u from the body's nearest point across the light to its farthest. The centre
+    /// line passes through the eye, as in the papers.
     pub(crate) frame: WarpFrame,
     /// Sine of the angle from the view axis to the picture's widest side, at least [`LEAST_SINE`].
     pub(crate) half_angle_sine: f64,
@@ -89,8 +89,8 @@ impl Sight {
         self.points.iter().fold(empty, |bounds, point| grown(bounds, *point - self.eye))
     }
 
-    /// How well the view has a direction across the light, 0 (view along the light) to 1 (the light is outside of the picture): smooth,
-    /// so that a warp along it is gone before its axis spins.
+    /// How well the view has a direction across the light, 0 (view along the light) to 1 (the light is outside of the
+    /// picture): smooth, so that a warp along it is gone before its axis spins.
     pub(crate) fn directed(&self) -> f64 {
         let share = (self.view.length() / self.half_angle_sine).min(1.0);
         share * share * (3.0 - 2.0 * share)
@@ -104,11 +104,12 @@ impl Sight {
     }
 }
 
-/// Views within this sine of the light have no direction whatever the lens: telephoto and orthographic cameras too need room in which to
-/// fade. Smaller lets axes spin within a frame; larger gives up warps that would serve.
+/// Views within this sine of the light have no direction whatever the lens: telephoto and orthographic cameras too need
+/// room in which to fade. Smaller lets axes spin within a frame; larger gives up warps that would serve.
 const LEAST_SINE: f64 = 0.05;
 
-/// Directions in which [`middle`] looks. With 4 it would be the middle of a box; more follow the hull's shape, and cost time.
+/// Directions in which [`middle`] looks. With 4 it would be the middle of a box; more follow the hull's shape, and cost
+/// time.
 const DIRECTIONS: u32 = 12;
 
 /// The Steiner point of the hull of some points: the mean of its extreme points over all directions, here over a dozen.

@@ -4,24 +4,27 @@
 //!
 //! 1. *Centre line* l: from the centre of the near plane to that of the far plane.
 //! 2. *Top line* and *base line*: across l, touching the hull at its near and at its far end, λ apart.
-//! 3. *Centre of projection* q on l, η before the top line, such that the focus point `P_L`, d' after the top line, comes to
-//!    lie on the line y = ξ of the map: η = λ d' (1 + ξ) / (λ − 2 d' − λ ξ). The 80 % rule is ξ = −0.6.
+//! 3. *Centre of projection* q on l, η before the top line, such that the focus point `P_L`, d' after the top line,
+//!    comes to lie on the line y = ξ of the map: η = λ d' (1 + ξ) / (λ − 2 d' − λ ξ). The 80 % rule is ξ = −0.6.
 //! 4. *Side lines*: through q, touching the hull on both sides.
 //! 5. `N_T` takes the corners t0 t1 (base) t2 t3 (top) to (−1, −1), (1, −1), (1, 1), (−1, 1).
 //!
-//! [`Trapezoid::map_from_light`] is `N_T` in closed form: the homography of strength κ = 1/η, which is regular also where the
-//! sides are parallel (κ = 0). [`chain`] is `N_T` as published, a product of eight matrices, for reading and for testing.
+//! [`Trapezoid::map_from_light`] is `N_T` in closed form: the homography of strength κ = 1/η, which is regular also
+//! where the sides are parallel (κ = 0). [`chain`] is `N_T` as published, a product of eight matrices, for reading and
+//! for testing.
 //!
 //! # Where this differs from print
 //! - TH-1: the 80 % line is printed as ξ = 1.6; it is −0.6 ([`LINE_80_PERCENT`]).
 //! - TH-2: the printed T2 has a stray `u_y` off its diagonal; it is a pure translation.
 //! - TH-3: the printed N ends in the row (0 1 0 1) and is singular; the row is (0 1 0 0).
-//! - TH-4: "the front side of the unit cube, z = 1" is not reached: z/w is 1/k at the base. Only x and y are on the square, so
-//!   that depth has to be kept apart.
+//! - TH-4: "the front side of the unit cube, z = 1" is not reached: z/w is 1/k at the base. Only x and y are on the
+//!   square, so that depth has to be kept apart.
 //!
 //! # References
-//! - Martin & Tan, *Anti-aliasing and continuity with trapezoidal shadow maps*, 2004, and its *Recipe*: `N_T`, the 80 % rule.
-//! - The thesis whose errata are named TH: *Shadow mapping remix approach*, section 3.2.2 and appendix A (η, q, side lines).
+//! - Martin & Tan, *Anti-aliasing and continuity with trapezoidal shadow maps*, 2004, and its *Recipe*: `N_T`, the 80 %
+//!   rule.
+//! - The thesis whose errata are named TH: *Shadow mapping remix approach*, section 3.2.2 and appendix A (η, q, side
+//!   lines).
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -31,8 +34,9 @@ use crate::camera::{Camera, Projection};
 pub use crate::math::homography::LINE_80_PERCENT;
 use crate::math::homography::{Homography, WarpFrame, kappa_for_line};
 
-/// Centre lines shorter than this share of the hull's diameter have no direction: view and light are parallel, and the map is
-/// uniform. At 0 the direction is rounding noise; at 1 every map is uniform. 1e-3 is a view within 0.06° of the light.
+/// Centre lines shorter than this share of the hull's diameter have no direction: view and light are parallel, and the
+/// map is uniform. At 0 the direction is rounding noise; at 1 every map is uniform. 1e-3 is a view within 0.06° of the
+/// light.
 const NO_DIRECTION: f64 = 1e-3;
 
 /// The published warp for a focus (E is what is in view, the light's post-perspective space its plane).
@@ -83,17 +87,17 @@ pub struct Trapezoid {
 impl Trapezoid {
     /// Steps 1 to 4 for a hull (its points in any order; inner points do no harm).
     ///
-    /// `centres` are the images of the centres of the near and of the far plane, `focus_point` that of `P_L`, and `line` is ξ in (−1, 1),
-    /// [`LINE_80_PERCENT`] in the papers. No allocation, total: a centre line without direction, a focus at or after
-    /// the line, and numbers that are not finite give parallel sides. O(points).
+    /// `centres` are the images of the centres of the near and of the far plane, `focus_point` that of `P_L`, and
+    /// `line` is ξ in (−1, 1), [`LINE_80_PERCENT`] in the papers. No allocation, total: a centre line without
+    /// direction, a focus at or after the line, and numbers that are not finite give parallel sides. O(points).
     #[must_use]
     pub fn around(centres: [DVec2; 2], hull: &[DVec2], focus_point: DVec2, line: f64) -> Self {
         let (frame, focus, kappa) = laid(centres, hull, focus_point, line);
         Self { frame, focus, kappa, sides: frame.sides(kappa, hull) }
     }
 
-    /// t0, t1 on the base line (far), t2, t3 on the top line (near), in the order in which they go to (−1, −1), (1, −1), (1, 1),
-    /// (−1, 1): counter-clockwise.
+    /// t0, t1 on the base line (far), t2, t3 on the top line (near), in the order in which they go to (−1, −1), (1,
+    /// −1), (1, 1), (−1, 1): counter-clockwise.
     #[must_use]
     pub fn corners(&self) -> [DVec2; 4] {
         let [a0, a1] = self.sides;
@@ -121,8 +125,9 @@ impl Trapezoid {
 
 /// `N_T` = S2 T3 N S1 H T2 R T1 as published and corrected: eight matrices that move a trapezoid onto a square.
 ///
-/// Points are columns (x, y, 1, 1); `corners` are t0 t1 (base) and t2 t3 (top). Each function is one matrix, and takes the corners
-/// where the matrices before it have left them. Not used for drawing: it has no answer for parallel sides and loses digits near them.
+/// Points are columns (x, y, 1, 1); `corners` are t0 t1 (base) and t2 t3 (top). Each function is one matrix, and takes
+/// the corners where the matrices before it have left them. Not used for drawing: it has no answer for parallel sides
+/// and loses digits near them.
 pub mod chain {
     use super::{DMat4, DVec2, DVec3, DVec4};
 
@@ -146,8 +151,8 @@ pub mod chain {
         translation(-top_middle(t2, t3))
     }
 
-    /// R. Turns it until the top line lies along x and the base line above it, at greater y (turned over, as in print: it is a
-    /// reflection, and S1 undoes that).
+    /// R. Turns it until the top line lies along x and the base line above it, at greater y (turned over, as in print:
+    /// it is a reflection, and S1 undoes that).
     #[must_use]
     pub fn upright_from_top([_, _, t2, t3]: [DVec4; 4]) -> DMat4 {
         let u = (flat(t2) - flat(t3)).normalize_or(DVec2::X);
@@ -171,7 +176,8 @@ pub mod chain {
         along.is_finite().then(|| translation(-(t3 + left * along)))
     }
 
-    /// H. Shears it along x until the middle of the top line is straight above q: the sides become symmetric about the y axis.
+    /// H. Shears it along x until the middle of the top line is straight above q: the sides become symmetric about the
+    /// y axis.
     #[must_use]
     pub fn isosceles_from_apex([_, _, t2, t3]: [DVec4; 4]) -> DMat4 {
         let u = top_middle(t2, t3);
@@ -185,10 +191,11 @@ pub mod chain {
         DMat4::from_scale(DVec3::new(1.0 / u.x, 1.0 / u.y, 1.0))
     }
 
-    /// N. Looks at it from q: x/y and 1 + 1/y. The sides become parallel and the trapezoid a rectangle, with its top at y = 2.
+    /// N. Looks at it from q: x/y and 1 + 1/y. The sides become parallel and the trapezoid a rectangle, with its top at
+    /// y = 2.
     ///
-    /// Erratum TH-3: printed with the last row (0 1 0 1), which repeats the second and makes `N_T` singular. Erratum TH-4: z is
-    /// kept and w grows, so that z/w falls from 1 on the top line to 1/k on the base line.
+    /// Erratum TH-3: printed with the last row (0 1 0 1), which repeats the second and makes `N_T` singular. Erratum
+    /// TH-4: z is kept and w grows, so that z/w falls from 1 on the top line to 1/k on the base line.
     #[must_use]
     pub fn rectangle_from_unit() -> DMat4 {
         rows([DVec4::X, DVec4::new(0.0, 1.0, 0.0, 1.0), DVec4::Z, DVec4::Y])

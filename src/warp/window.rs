@@ -1,4 +1,5 @@
-//! Windows: the rectangle, across the light, that a map shows. Bent first where the map is warped; as it is in uniform maps.
+//! Windows: the rectangle, across the light, that a map shows. Bent first where the map is warped; as it is in uniform
+//! maps.
 //!
 //! # References
 //! - Williams, *Casting curved shadows on curved surfaces*, 1978 (the standard shadow map).
@@ -73,7 +74,8 @@ impl Window {
         ends.then(|| corners.map(|corner| self.bend.unbent(corner)))
     }
 
-    /// The sides of a texel at a point (p, q) of the frame, world units across the light; `texel` is their length, bent units.
+    /// The sides of a texel at a point (p, q) of the frame, world units across the light; `texel` is their length, bent
+    /// units.
     ///
     /// Exact derivative of [`Bend::unbent`]: W (e + (g · e) (x − o)).
     pub(crate) fn texel_at(&self, at: DVec2, texel: DVec2) -> [DVec2; 2] {

@@ -1,5 +1,5 @@
-//! Several maps: drawn layer by layer, and read by eye depth or by what holds a point. The frames are put together here,
-//! from fits of one map each.
+//! Several maps: drawn layer by layer, and read by eye depth or by what holds a point. The frames are put together
+//! here, from fits of one map each.
 
 use antumbra::gpu::{GpuError, ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::cpu::{self, Visible};

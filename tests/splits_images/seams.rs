@@ -124,7 +124,8 @@ fn bands(place: &Place, select: Select) -> Vec<Band> {
 #[derive(Default)]
 struct Found {
     bands: usize,
-    /// Bands whose mean is above both neighbours': their errors lie at different places, and the blend has some of both.
+    /// Bands whose mean is above both neighbours': their errors lie at different places, and the blend has some of
+    /// both.
     above_both: usize,
     broken: Vec<String>,
 }

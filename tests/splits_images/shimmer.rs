@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use crate::PICTURE;
 use crate::drawn::Drawn;
 
-/// Frames of a path, 1/60 s apart; those that are drawn are its first. Fewer leave the mean to chance, more take longer,
-/// and a head that has turned far looks at nothing.
+/// Frames of a path, 1/60 s apart; those that are drawn are its first. Fewer leave the mean to chance, more take
+/// longer, and a head that has turned far looks at nothing.
 const PATH: usize = 300;
 const FRAMES: usize = 24;
 
@@ -201,8 +201,8 @@ fn measure(name: &str, subject: &Subject, start: &Viewpoint, broken: &mut Vec<St
 
 /// Snapped maps leave at most half of the shimmer of what stands still in the world.
 ///
-/// Not of what stands still in the picture. There each pixel shows another point in each frame and meets errors of other
-/// texels, of maps that move or do not; where pixels move over texels faster than edges crawl, that is most of
+/// Not of what stands still in the picture. There each pixel shows another point in each frame and meets errors of
+/// other texels, of maps that move or do not; where pixels move over texels faster than edges crawl, that is most of
 /// the change, and the larger texels of snapped maps make it larger.
 #[test]
 fn snapped_maps_shimmer_less() {

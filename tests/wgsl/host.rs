@@ -32,8 +32,8 @@ pub(crate) fn has_two_stages(key: WgslKey) -> bool {
 }
 
 /// Stages around everything else that a key has, given the names of the host's matrix and row of depth. Casters of an
-/// affine map are vertices alone, and the lookup in one of them can be split over two stages. Casters of a warped map carry their
-/// linear depth from the vertices to the fragments, which write it.
+/// affine map are vertices alone, and the lookup in one of them can be split over two stages. Casters of a warped map
+/// carry their linear depth from the vertices to the fragments, which write it.
 pub(crate) fn stages(key: WgslKey, matrix: &str, depth_row: &str) -> String {
     let text = match key.shape {
         MapShape::Affine if has_two_stages(key) => {

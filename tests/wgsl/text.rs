@@ -101,9 +101,9 @@ fn one_lookup_is_straight_code() {
     }
 }
 
-/// The cost of a filter, in texture samples, and of finding one map among several: one lookup, or two where neighbours by
-/// depth are blended. By containment there is one in a loop, which ends at the first map that holds the receiver, or, with
-/// blending, at the last one that has a share.
+/// The cost of a filter, in texture samples, and of finding one map among several: one lookup, or two where neighbours
+/// by depth are blended. By containment there is one in a loop, which ends at the first map that holds the receiver,
+/// or, with blending, at the last one that has a share.
 #[test]
 fn samples_per_lookup() {
     for key in WgslKey::all() {
@@ -125,8 +125,8 @@ fn functions(key: WgslKey) -> Vec<String> {
     shader.module.functions.iter().filter_map(|(_, function)| function.name.clone()).collect()
 }
 
-/// The lookup in two stages is for one map in which it is linear in position, and for no others; each key has one lookup,
-/// and one way to find the map among several.
+/// The lookup in two stages is for one map in which it is linear in position, and for no others; each key has one
+/// lookup, and one way to find the map among several.
 #[test]
 fn two_stages_are_for_one_affine_map_alone() {
     for key in WgslKey::all() {

@@ -15,9 +15,9 @@ use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
 /// The yardstick for casters is a depth pass with one matrix; the yardstick for receivers is one matrix, one comparison
 /// sample and a constant bias, in three hosts: *bare* (nobody reads a normal), *shaded* (both sides shade what arrives
 /// with Lambert's cosine, as engines do, and need the normal for it) and *at vertices* (its matrix, too, is left to the
-/// vertex stage). Beside several maps it draws each of them, and looks everything up in one. Both sides draw the same triangles into targets of the same size. Every repetition times all of them,
-/// in alternating order, those of a ratio one after the other; the medians of the ratios are robust against other work
-/// on the machine.
+/// vertex stage). Beside several maps it draws each of them, and looks everything up in one. Both sides draw the same
+/// triangles into targets of the same size. Every repetition times all of them, in alternating order, those of a ratio
+/// one after the other; the medians of the ratios are robust against other work on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
     /// Library's caster pass, median, milliseconds.

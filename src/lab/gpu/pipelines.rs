@@ -107,8 +107,8 @@ pub(super) enum Host {
 
 impl Host {
     /// The laboratory's: in two stages where a fragment takes one sample. Boxes take four and more, which is what they
-    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position, and vertices do not know which
-    /// of several maps their fragments read.
+    /// cost; their lookup stays whole. In warped maps nothing of it is linear in position, and vertices do not know
+    /// which of several maps their fragments read.
     pub(super) fn of(key: WgslKey) -> Self {
         match key.filter {
             Pcf::Point | Pcf::Hardware2x2 if has_two_stages(key) => Self::Placed,
