@@ -121,6 +121,9 @@ fn serves(
         // As it is compared: less what rounding may have added.
         let compared = antumbra_look(key, &frame.uniforms.views[index], at, Vec3::ZERO).depth;
         prop_assert!(compared <= 1.0, "view {index}: depth {compared}");
+        // Found by depth, it is one of the receivers that the map was fitted to.
+        let lies = view.depth_from_render.dot(at.extend(1.0));
+        prop_assert!(lies >= 0.0 && (key.select == Select::Finest || lies <= 1.0), "view {index}: {lies}");
         prop_assert!(
             view.cull.may_cast(&Aabb::new(caster, caster)),
             "view {index} culls {caster} of {receiver} at {depth} {rooms:?} {:?} {:?}",

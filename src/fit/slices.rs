@@ -3,11 +3,11 @@
 //! # References
 //! - Zhang, Sun, Xu & Lu, *Parallel-split shadow maps for large-scale virtual environments*, 2006.
 
-use crate::fit::cuts::{Cut, Cuts};
+use crate::fit::cuts::Cuts;
 use crate::fit::snap::Stabilise;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
-use crate::frame::{Footprint, Select, ShadowFrame};
+use crate::frame::{Footprint, MAX_VIEWS, Select, ShadowFrame};
 use crate::report::{Part, Why};
 use crate::scene::DepthRange;
 use crate::split::depth::DepthSplits;
@@ -43,14 +43,13 @@ impl Fitter<'_> {
                 continue;
             }
             // What it serves; a map of the whole scene serves all that follows.
-            frame.uniforms.views[usize::from(index)].domain = self.domain(splits, cut.depth, before);
+            let last = if layout.whole { slices.last().unwrap_or(cut) } else { cut }.depth;
+            let band = f64::from(splits.blend) * (last.far - last.near);
+            let served = DepthRange { near, far: last.far };
+            frame.uniforms.views[usize::from(index)].domain = self.domain(splits, served, band);
             if layout.whole {
-                let last = slices.last().unwrap_or(cut).depth;
-                let band = f64::from(splits.blend) * (last.far - last.near);
-                frame.uniforms.views[usize::from(index)].domain =
-                    self.domain(splits, DepthRange { near, far: last.far }, band);
-                let served = |next: &Cut| (Part::Split(next.split), Why::ServedBy { view: index });
-                slices[number + 1..].iter().map(served).for_each(|(part, why)| frame.leave_out(part, why));
+                let why = Why::ServedBy { view: index };
+                slices[number + 1..].iter().for_each(|next| frame.leave_out(Part::Split(next.split), why));
                 break;
             }
         }
@@ -101,29 +100,35 @@ impl Fitter<'_> {
             Select::Finest => (domain[2], domain[3]) = (NO_RIM, 1.0),
         }
         // Footprints over all views; the error by the share of what is seen in each.
+        let seen = self.seen_by_view(range, frame);
         let mut predicted = Footprint { min: f32::INFINITY, ..Footprint::NONE };
-        let (mut error, mut seen) = (0.0, 0.0);
-        for (view, uniforms) in frame.views.iter().zip(&frame.uniforms.views) {
-            let [near, far] = [uniforms.domain[0], uniforms.domain[1]].map(|depth| f64::from(depth).min(range.far));
-            let share = self.share_seen(DepthRange { near, far });
+        let (mut error, mut all) = (0.0, 0.0);
+        for (view, seen) in frame.views.iter().zip(seen) {
             let pixels = view.texel.pixels;
             predicted.min = predicted.min.min(pixels.min);
             predicted.max = predicted.max.max(pixels.max);
-            error += share * f64::from(pixels.error);
-            seen += share;
+            error += seen * f64::from(pixels.error);
+            all += seen;
         }
-        predicted.error = if seen > 0.0 { (error / seen) as f32 } else { 0.0 };
+        predicted.error = if all > 0.0 { (error / all) as f32 } else { 0.0 };
         frame.predicted = predicted;
     }
 
-    /// How much is seen between two eye depths: samples, or where none are given, depths.
-    fn share_seen(&self, DepthRange { near, far }: DepthRange) -> f64 {
-        let points = self.input.scene.visible_points;
-        if points.is_empty() {
-            return far - near;
+    /// How much is seen in the depths of each view: samples, or where none are given, depths. O(samples · views).
+    fn seen_by_view(&self, range: DepthRange, frame: &ShadowFrame) -> [f64; MAX_VIEWS] {
+        let domains = frame.uniforms.views.each_ref().map(|view| [view.domain[0], view.domain[1]].map(f64::from));
+        let samples = self.input.scene.visible_points;
+        if samples.is_empty() {
+            return domains.map(|[near, far]| far.min(range.far) - near);
         }
-        let camera = &self.input.camera;
-        let depths = points.iter().map(|point| camera.eye_depth(*point, glam::DVec3::ZERO));
-        depths.filter(|depth| (near..far).contains(depth)).count() as f64
+        let mut seen = [0.0; MAX_VIEWS];
+        for sample in samples {
+            let depth = self.input.camera.eye_depth(*sample, glam::DVec3::ZERO);
+            let view = domains[..frame.views.len()].iter().position(|[near, far]| (*near..*far).contains(&depth));
+            if let Some(view) = view {
+                seen[view] += 1.0;
+            }
+        }
+        seen
     }
 }

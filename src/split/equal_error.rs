@@ -49,6 +49,8 @@ const ENOUGH_SAMPLES: f64 = 8.0;
 struct Cost<'a> {
     profile: &'a Profile,
     range: DepthRange,
+    /// Classes over the logarithm of depth; over depth where it has none.
+    scale: f64,
     /// Share of what is seen before the end of each class.
     seen: [f64; CLASSES + 1],
 }
@@ -97,9 +99,14 @@ fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     at(0.5 * (left + right)).clamp(low, high)
 }
 
+/// Length of a range in the logarithm of depth; in depth where it has none.
+fn span(DepthRange { near, far }: DepthRange) -> f64 {
+    if near > 0.0 { (far / near).ln() } else { far - near }
+}
+
 impl<'a> Cost<'a> {
     fn of(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
-        let mut cost = Self { profile, range, seen: [0.0; CLASSES + 1] };
+        let mut cost = Self { profile, range, scale: CLASSES as f64 / span(range), seen: [0.0; CLASSES + 1] };
         // Count what is seen; what is not known is spread evenly.
         let mut count = 0.0;
         for sample in samples {
@@ -121,10 +128,10 @@ impl<'a> Cost<'a> {
 
     /// Depth in classes, 0 to [`CLASSES`].
     fn class(&self, depth: f64) -> f64 {
-        let DepthRange { near, far } = self.range;
-        let share = if near > 0.0 { (depth / near).ln() / (far / near).ln() } else { (depth - near) / (far - near) };
+        let near = self.range.near;
+        let class = span(DepthRange { near, far: depth }) * self.scale;
         // 0/0 where there is no range.
-        if share.is_finite() { share.clamp(0.0, 1.0) * CLASSES as f64 } else { 0.0 }
+        if class.is_finite() { class.clamp(0.0, CLASSES as f64) } else { 0.0 }
     }
 
     /// Share of what is seen that lies before a depth.
