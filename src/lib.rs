@@ -87,6 +87,7 @@ mod scene;
 pub mod split;
 mod technique;
 pub mod techniques;
+mod texel;
 #[cfg(feature = "naga")]
 pub mod transpile;
 pub mod warp;
@@ -110,4 +111,5 @@ pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
 pub use split::{DepthSplits, Scheme, Split};
 pub use technique::{FitInput, ShadowTechnique};
+pub use texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
 pub use warp::{Focus, Warp};

@@ -29,12 +29,15 @@
 //! triangles that are small beside the curvature, too little across large ones, where acne may show; those take
 //! `antumbra_visibility`. Choose the side that is looked at from the eye position; all vertices of a face then agree.
 
+mod moments;
+
 use core::fmt::Write as _;
 use std::borrow::Cow;
 
 use arrayvec::ArrayVec;
 
 use crate::frame::{MAX_VIEWS, MapShape, Pcf, Select, WgslKey};
+use crate::texel::Moments;
 
 /// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,6 +184,15 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
         text.push_str(TWO_STAGES);
     }
     text
+}
+
+/// The whole text of the passes that filter a map of depths into one of moments, for engines that do without the module
+/// `gpu`: vertex entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_blur_along_u` (reads
+/// depths), `antumbra_blur_along_v` (reads what that wrote) and `antumbra_halve` (a level of mips from the one above).
+/// Bindings in group 0: 0 [`BlurUniforms`](crate::encoding::blur::BlurUniforms), 1 the depths, 2 what is stored.
+#[must_use]
+pub fn prefilter(moments: Moments) -> String {
+    moments::prefilter(moments)
 }
 
 /// What an engine calls, and how it finds its map.

@@ -14,6 +14,7 @@ const LEVELS: &[(&str, u8)] = &[
     ("light", 1),
     ("scene", 1),
     ("content", 1),
+    ("texel", 1),
     ("frame", 2),
     ("encoding", 3),
     ("technique", 3),

@@ -1,5 +1,6 @@
 //! What a texel stores and how it is read: the Rust twins of the shaders, in f32 as they are.
 
+pub mod blur;
 pub mod convolution;
 pub mod depth;
 pub mod exponential;

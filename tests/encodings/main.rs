@@ -6,6 +6,7 @@
 mod dice;
 mod hostile;
 mod known;
+mod passes;
 mod sets;
 mod shader;
 #[path = "../support/mod.rs"]

@@ -1,0 +1,4 @@
+// What a texel of the filtered map stores of a depth.
+fn antumbra_store(depth: f32) -> vec4f {
+    return antumbra_moments_packed(antumbra_moments(depth));
+}

@@ -1,0 +1,259 @@
+//! What a texel of the map that receivers read stores: a depth, or moments of depths that are averaged first.
+
+/// What is stored per texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Texel {
+    /// The nearest depth, compared when it is read ([`Pcf`](crate::Pcf)).
+    #[default]
+    Depth,
+    /// Numbers whose mean says how much light arrives: maps are blurred once, and read with one sample.
+    Moments(Moments),
+}
+
+/// Which moments, in which format, and how they are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Moments {
+    kind: MomentKind,
+    format: MomentFormat,
+    /// Whether samplers interpolate the format; otherwise the shader does, from four texels.
+    pub linear: bool,
+    /// Whether far texels are read from smaller copies of the map.
+    pub mips: bool,
+}
+
+/// Which moments of depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MomentKind {
+    /// Depth and its square ([`encoding::variance`](crate::encoding::variance)): light bleeds where casters overlap.
+    Variance,
+    /// An exponential of depth ([`encoding::exponential`](crate::encoding::exponential)): light leaks at contacts.
+    Exponential,
+    /// Variance of one exponential: bleeds less, leaks at contacts.
+    ExponentialVarianceTwo,
+    /// Variance of two exponentials: bleeds less.
+    ExponentialVarianceFour,
+    /// A Fourier series of 8 terms ([`encoding::convolution`](crate::encoding::convolution)): rings.
+    Convolution,
+    /// Four moments, for depths anywhere ([`encoding::moments`](crate::encoding::moments)).
+    Hamburger,
+    /// Four moments, for depths within the map: darker, a little dearer.
+    Hausdorff,
+}
+
+/// How numbers are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MomentFormat {
+    /// 32 bits, floating: every adapter draws it; samplers interpolate it with a feature only.
+    #[default]
+    Float32,
+    /// 16 bits, floating: every adapter draws and interpolates it.
+    Float16,
+    /// 16 bits, 0 to 1: needs a feature.
+    Unorm16,
+    /// 8 bits, 0 to 1: every adapter draws and interpolates it.
+    Unorm8,
+}
+
+/// Terms of the series of [`MomentKind::Convolution`]: four would blur shadows over a quarter of the depth range, 16
+/// take 32 bytes a texel.
+pub const CONVOLUTION_TERMS: u32 = 8;
+
+impl MomentKind {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Variance,
+        Self::Exponential,
+        Self::ExponentialVarianceTwo,
+        Self::ExponentialVarianceFour,
+        Self::Convolution,
+        Self::Hamburger,
+        Self::Hausdorff,
+    ];
+
+    /// Formats that hold them, the most exact one first.
+    #[must_use]
+    pub const fn formats(self) -> &'static [MomentFormat] {
+        use MomentFormat::{Float16, Float32, Unorm8, Unorm16};
+        match self {
+            Self::Variance => &[Float32, Unorm16, Float16],
+            Self::Exponential | Self::ExponentialVarianceTwo | Self::ExponentialVarianceFour => &[Float32, Float16],
+            Self::Convolution => &[Unorm8],
+            Self::Hamburger | Self::Hausdorff => &[Float32, Unorm16],
+        }
+    }
+
+    /// Numbers of a texel.
+    #[must_use]
+    pub const fn channels(self) -> u32 {
+        match self {
+            Self::Exponential => 1,
+            Self::Variance | Self::ExponentialVarianceTwo => 2,
+            Self::ExponentialVarianceFour | Self::Hamburger | Self::Hausdorff => 4,
+            Self::Convolution => 2 * CONVOLUTION_TERMS,
+        }
+    }
+
+    /// Name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Variance => "variance",
+            Self::Exponential => "exponential",
+            Self::ExponentialVarianceTwo => "exponential variance 2",
+            Self::ExponentialVarianceFour => "exponential variance 4",
+            Self::Convolution => "convolution",
+            Self::Hamburger => "four moments, Hamburger",
+            Self::Hausdorff => "four moments, Hausdorff",
+        }
+    }
+}
+
+impl MomentFormat {
+    /// Bits of a number.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        match self {
+            Self::Float32 => 32,
+            Self::Float16 | Self::Unorm16 => 16,
+            Self::Unorm8 => 8,
+        }
+    }
+
+    /// Name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Float32 => "f32",
+            Self::Float16 => "f16",
+            Self::Unorm16 => "unorm16",
+            Self::Unorm8 => "unorm8",
+        }
+    }
+}
+
+impl Moments {
+    /// Moments in a format; in the most exact one that holds them where that one does not. Without mips, and read by
+    /// four loads where not every adapter interpolates the format.
+    #[must_use]
+    pub fn new(kind: MomentKind, format: MomentFormat) -> Self {
+        let formats = kind.formats();
+        let format = if formats.contains(&format) { format } else { formats[0] };
+        Self { kind, format, linear: format != MomentFormat::Float32, mips: false }
+    }
+
+    /// Every kind in every format that holds it, each read in every way there is.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let of_kind = |kind: MomentKind| kind.formats().iter().map(move |format| Self::new(kind, *format));
+        MomentKind::ALL.into_iter().flat_map(of_kind).flat_map(|moments| {
+            let linear = if moments.linear { &[true][..] } else { &[false, true] };
+            linear.iter().flat_map(move |linear| {
+                [false, true].map(|mips| Self { linear: *linear, mips, ..moments })
+            })
+        })
+    }
+
+    /// Which moments.
+    #[must_use]
+    pub const fn kind(self) -> MomentKind {
+        self.kind
+    }
+
+    /// How they are kept.
+    #[must_use]
+    pub const fn format(self) -> MomentFormat {
+        self.format
+    }
+
+    /// Bytes of a texel of the map that is read.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        self.kind.channels() * self.format.bits() / 8
+    }
+
+    /// Array layers that a map takes: a series has more numbers than a texel.
+    #[must_use]
+    pub const fn layers(self) -> u32 {
+        self.kind.channels().div_ceil(4)
+    }
+
+    /// c⁺ and c⁻ of exponential variance: just below half the logarithm of the largest number (5.545, 44.36). For 32
+    /// bits the far side keeps 40, which is as much for a sum of 100 texels; near a contact more than 8 tells rounding
+    /// apart from depth.
+    #[must_use]
+    pub const fn exponents(self) -> [f32; 2] {
+        match self.format {
+            MomentFormat::Float32 => [40.0, 8.0],
+            _ => [5.54, 5.54],
+        }
+    }
+
+    /// c of an exponential: light leaks over 1/c of the depth range behind a caster. With 16 bits a step of depth is
+    /// 1/2048, and more than 40 shows it.
+    #[must_use]
+    pub const fn exponent(self) -> f32 {
+        match self.format {
+            MomentFormat::Float32 => 80.0,
+            _ => 40.0,
+        }
+    }
+
+    /// What rounding takes from the variance of centred depths: MATH.md section 7, measured; a quarter of what is stated
+    /// there for 32 bits, because depths are centred.
+    #[must_use]
+    pub const fn variance_loss(self) -> f32 {
+        match self.format {
+            MomentFormat::Float32 => 5e-7,
+            MomentFormat::Unorm16 => 4e-5,
+            MomentFormat::Float16 | MomentFormat::Unorm8 => 1e-3,
+        }
+    }
+
+    /// Standard deviation of depth that rounding makes of bent depths, share of the range: for 16 bits steps of 1/2048
+    /// of a square, over twice the exponent.
+    #[must_use]
+    pub const fn blur(self) -> f32 {
+        match self.format {
+            MomentFormat::Float32 => 1e-4,
+            _ => 4.4e-3,
+        }
+    }
+
+    /// Share of a spread distribution that keeps four moments possible: MATH.md section 7.
+    #[must_use]
+    pub const fn moment_bias(self) -> f32 {
+        match self.format {
+            MomentFormat::Float32 => 1e-6,
+            _ => 6e-5,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_legal_and_bytes_are_theirs() {
+        for kind in MomentKind::ALL {
+            for format in [MomentFormat::Float32, MomentFormat::Float16, MomentFormat::Unorm16, MomentFormat::Unorm8] {
+                assert!(kind.formats().contains(&Moments::new(kind, format).format()));
+            }
+        }
+        let bytes = |kind, format| Moments::new(kind, format).bytes();
+        assert_eq!(bytes(MomentKind::Variance, MomentFormat::Float32), 8);
+        assert_eq!(bytes(MomentKind::Hamburger, MomentFormat::Unorm16), 8);
+        assert_eq!(bytes(MomentKind::Convolution, MomentFormat::Float32), 16);
+        assert_eq!(Moments::all().count(), 40);
+    }
+
+    /// Squares of bent depths, and sums of many, stay below the largest number.
+    #[test]
+    fn exponents_do_not_overflow() {
+        for moments in Moments::all() {
+            let largest = if moments.format == MomentFormat::Float32 { f64::from(f32::MAX) } else { 65_504.0 };
+            for exponent in moments.exponents() {
+                assert!((2.0 * f64::from(exponent)).exp() < largest);
+            }
+        }
+    }
+}
