@@ -4,7 +4,7 @@
 //! - Acton, *Scrolling cascaded shadow maps*, 2012 (cached cascades that move by whole texels are shifted, and redrawn
 //!   along two strips).
 
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3, IVec2, UVec2};
 
 /// What an engine has to draw of a map whose casters have not moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum Content {
     /// Nothing: its texels hold what they did.
     Unchanged,
     /// What has come into view: the texel at (x, y) holds what the one at (x, y) + `texels` held, both counted from the
-    /// upper left corner.
+    /// upper left corner of the view's viewport.
     Scrolled {
         /// Whole texels, x to the right and y down.
         texels: IVec2,
@@ -33,10 +33,35 @@ pub(crate) struct Place {
     pub(crate) low: DVec2,
     /// Nearest and farthest depth along the light, world units.
     pub(crate) depth: [f64; 2],
-    /// Texels along a side.
-    pub(crate) side: u32,
+    /// Its texels in the layers.
+    pub(crate) tile: Tile,
     /// Whether texels are all of one size.
     pub(crate) uniform: bool,
+}
+
+/// The texels of a map: a square of a layer, or all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tile {
+    /// Array layer.
+    pub(crate) layer: u32,
+    /// Upper left corner in the layer, texels.
+    pub(crate) corner: UVec2,
+    /// Texels along a side.
+    pub(crate) side: u32,
+    /// Texels along a side of the layer.
+    pub(crate) of: u32,
+}
+
+impl Tile {
+    /// All of a layer.
+    pub(crate) const fn whole(layer: u32, side: u32) -> Self {
+        Self { layer, corner: UVec2::ZERO, side, of: side }
+    }
+
+    /// How often the layer's side was halved for it.
+    pub(crate) fn halvings(self) -> u32 {
+        (0..u32::BITS).find(|halvings| self.of >> halvings <= self.side).unwrap_or(0)
+    }
 }
 
 /// Parts of a texel, and of the depth range, by which places may differ and be the same: rounding of f64 far from the
@@ -52,9 +77,9 @@ impl Content {
         let range = (now.depth[1] - now.depth[0]).abs();
         let close = |a: f64, b: f64, unit: f64| (a - b).abs() <= SAME * unit;
         let depths = now.depth.iter().zip(before.depth).all(|(now, before)| close(*now, before, SAME * range));
-        let same = now.uniform && before.uniform && now.axes == before.axes && now.side == before.side && depths;
+        let same = now.uniform && before.uniform && now.axes == before.axes && now.tile == before.tile && depths;
         // The far side of the map is off by as many parts of a texel as there are texels.
-        let texels = (now.texel - before.texel).abs() * f64::from(now.side);
+        let texels = (now.texel - before.texel).abs() * f64::from(now.tile.side);
         if !same || texels.cmpgt(now.texel * SAME).any() {
             return Self::Redraw;
         }
@@ -82,7 +107,7 @@ mod tests {
             texel: DVec2::splat(0.25),
             low: DVec2::new(-3.0, 7.0),
             depth: [0.0, 50.0],
-            side: 512,
+            tile: Tile::whole(0, 512),
             uniform: true,
         }
     }
@@ -103,7 +128,9 @@ mod tests {
             Place { axes: [DVec3::Z, DVec3::X, DVec3::NEG_Y], ..place() },
             Place { texel: DVec2::splat(0.3), ..place() },
             Place { depth: [0.0, 60.0], ..place() },
-            Place { side: 1024, ..place() },
+            Place { tile: Tile::whole(0, 1024), ..place() },
+            Place { tile: Tile::whole(1, 512), ..place() },
+            Place { tile: Tile { of: 1024, ..Tile::whole(0, 512) }, ..place() },
             Place { uniform: false, ..place() },
         ] {
             assert_eq!(Content::since(&place(), &other), Content::Redraw, "{other:?}");

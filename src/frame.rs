@@ -11,9 +11,9 @@ use crate::scene::{Aabb, MapBudget};
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
 
-/// Most lines of [`ShadowFrame::left_out`]: five a view (receivers, window, border, and two of the warp), and five of
-/// the whole.
-pub const MAX_LEFT_OUT: usize = 5 * MAX_VIEWS + 5;
+/// Most lines of [`ShadowFrame::left_out`]: six a view (receivers, window, border, texels, and two of the warp), and five
+/// of the whole.
+pub const MAX_LEFT_OUT: usize = 6 * MAX_VIEWS + 5;
 
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;
@@ -25,8 +25,8 @@ pub struct WgslKey {
     pub filter: Pcf,
     /// Whether positions are divided by w on their way into the map.
     pub shape: MapShape,
-    /// Most maps of a frame, 1 to [`MAX_VIEWS`]: the length of the uniform array and of the layers. 1 is a plain map,
-    /// and a shader without arrays or loops.
+    /// Most maps of a frame, 1 to [`MAX_VIEWS`]: the length of the uniform array, and the most layers. 1 is a plain
+    /// map, and a shader without arrays or loops.
     pub maps: u8,
     /// How a receiver finds its map among several; [`Select::Depth`] for one map.
     pub select: Select,
@@ -160,6 +160,13 @@ impl ShadowFrame {
         }
     }
 
+    /// Takes back all views, and what was left out after the first `said` lines.
+    pub(crate) fn take_back(&mut self, said: usize) {
+        self.views.clear();
+        self.uniforms = ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] };
+        self.left_out.truncate(said);
+    }
+
     /// Notes what was left out. The capacity follows from the most reasons a plan can have.
     pub(crate) fn leave_out(&mut self, part: Part, why: Why) {
         let _ = self.left_out.try_push(LeftOut { part, why });
@@ -174,7 +181,9 @@ pub struct ShadowView {
     pub clip_from_render: Mat4,
     /// Linear light depth in [0, 1] of a render-space position: `dot(depth_from_render, (x, y, z, 1))`.
     pub depth_from_render: Vec4,
-    /// Where to draw: x, y, width, height, texels of the layer.
+    /// Where to draw: x, y, width, height, texels of the layer. One texel around it belongs to the map as well, and
+    /// stays cleared to the farthest depth. Several views may have their tiles in one layer
+    /// ([`Share`](crate::Share)): clear no more of it than that.
     pub viewport: UVec4,
     /// Array layer of the map.
     pub layer: u32,
@@ -191,6 +200,8 @@ pub struct ShadowView {
     pub content: Content,
     /// Where its texels are in the world.
     pub(crate) place: Place,
+    /// Number of the split that it was made for.
+    pub(crate) split: u8,
 }
 
 /// Size of a view's texels.
@@ -286,16 +297,17 @@ pub struct ViewUniforms {
     /// how much of itself a texel outgrows its neighbours in u and in v together, for each unit of w; 0 without
     /// automatic bias. w: side of a texel, texture coordinates.
     pub bias: [f32; 4],
-    /// The part of the map that is drawn, in texture coordinates: u min, v min, u max, v max. Texels outside stay
-    /// cleared, so that lookups beyond the window read lit.
+    /// The part of the layer that is drawn, in texture coordinates: u min, v min, u max, v max. The texels around it
+    /// stay cleared, so that lookups beyond the window, which read those, read lit.
     pub rect: [f32; 4],
     /// Warped maps: how far a plane of normal n falls over a texel step at (u, v), along its normal and in world units,
     /// is w² (n·V − v n·W) for a step in u and w² (u n·W − n·U) for a step in v, with U this row, V `across_v` and W
-    /// `across_w` (x, y, z of each; the last member is 0). All 0 without automatic bias.
+    /// `across_w` (x, y, z of each). All 0 without automatic bias. w: array layer of the map.
     pub across_u: [f32; 4],
-    /// Warped maps: V of `across_u`.
+    /// Warped maps: V of `across_u`. w, of the first view of several that are found by containment: eye depth at which
+    /// shadows begin to give way to light.
     pub across_v: [f32; 4],
-    /// Warped maps: W of `across_u`.
+    /// Warped maps: W of `across_u`. w, of the first view: one over the length of that band, 0 for none.
     pub across_w: [f32; 4],
     /// Several maps: nearest and farthest eye depth that the view serves (found by depth, the last one serves
     /// everything behind it). Found by depth: the depth at which it begins to give way to the next one, and one over

@@ -53,6 +53,7 @@
 //! }
 //! ```
 
+mod clear;
 mod depth_range;
 mod error;
 mod layout;
@@ -66,6 +67,7 @@ pub use wgpu;
 
 use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUniforms, WgslKey};
 use crate::scene::MapBudget;
+use clear::{TileClear, limit_to, tile_of};
 use layout::{CASTER_BYTES, bind_entries, caster_bind_group, map_dimension, most_views, uniform_bytes};
 
 /// Format of a depth map: the precision that the bias is computed for.
@@ -95,6 +97,8 @@ pub struct ShadowMaps {
     view: wgpu::TextureView,
     /// What casters are drawn into: a view for each layer.
     attachments: ArrayVec<wgpu::TextureView, MAX_VIEWS>,
+    /// For maps that share a layer; one map has its own.
+    clear: Option<TileClear>,
     compare: wgpu::Sampler,
     uniforms: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
@@ -150,6 +154,7 @@ impl ShadowMaps {
             texture,
             view,
             attachments,
+            clear: (key.maps > 1).then(|| TileClear::new(device)),
             compare,
             uniforms,
             layout,
@@ -203,8 +208,8 @@ impl ShadowMaps {
         Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side, layers })
     }
 
-    /// Begins the depth pass of a view: its layer cleared to the farthest depth, its viewport set. The engine binds,
-    /// and draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last
+    /// Begins the depth pass of a view: its tile of the layer cleared to the farthest depth, its viewport set; what other
+    /// views have in the layer stays. The engine binds, and draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last
     /// one.
     pub fn caster_pass<'encoder>(
         &self,
@@ -213,22 +218,26 @@ impl ShadowMaps {
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites>,
     ) -> wgpu::RenderPass<'encoder> {
         let layer = (view.layer as usize).min(self.attachments.len() - 1);
+        let tile = tile_of(view.viewport, self.side);
+        let shared = self.clear.as_ref().filter(|_| tile.z < self.side || tile.w < self.side);
+        let load = if shared.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(1.0) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("antumbra casters"),
             color_attachments: &[],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.attachments[layer],
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             timestamp_writes,
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        let [x, y, width, height] = view.viewport.as_vec4().to_array();
-        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        if let Some(clear) = shared {
+            clear.draw(&mut pass, tile);
+        }
         // What lies outside has to stay clear: lookups beyond the view read lit there.
-        pass.set_scissor_rect(view.viewport.x, view.viewport.y, view.viewport.z, view.viewport.w);
+        limit_to(&mut pass, view.viewport);
         pass
     }
 
@@ -279,7 +288,7 @@ impl ShadowMaps {
         self.caster_stride * view.min(most_views(self.key) - 1) as u32
     }
 
-    /// The maps: a layer for each.
+    /// The maps: a layer for each, or tiles of layers ([`ShadowView::layer`], [`ShadowView::viewport`]).
     #[must_use]
     pub fn depth_texture(&self) -> &wgpu::Texture {
         &self.texture
@@ -291,13 +300,14 @@ impl ShadowMaps {
         &self.view
     }
 
-    /// Number of maps that there are texels for.
+    /// Number of layers: of whole maps that there are texels for.
     #[must_use]
     pub fn layers(&self) -> u32 {
         self.attachments.len() as u32
     }
 
-    /// Memory of the maps, bytes (texels only: what drivers add is not known here).
+    /// Memory of the maps, bytes, whether their texels are in use or not (texels only: what drivers add is not known
+    /// here).
     #[must_use]
     pub fn bytes(&self) -> u64 {
         u64::from(self.side) * u64::from(self.side) * u64::from(self.layers()) * DEPTH_TEXEL_BYTES

@@ -100,6 +100,7 @@ pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use content::Content;
 pub use error::FitError;
 pub use fit::bias::Bias;
+pub use fit::share::Share;
 pub use fit::snap::Stabilise;
 pub use frame::{
     CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, Select, ShadowFrame,

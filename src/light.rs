@@ -55,6 +55,16 @@ impl Light {
             }
         }
     }
+
+    /// The travel of a directional light; other lights are not served yet.
+    pub(crate) fn directional(&self) -> Result<DVec3, FitError> {
+        let value = match *self {
+            Self::Directional { travel } => return Ok(travel),
+            Self::Spot { .. } => "a spot light",
+            Self::Point { .. } => "a point light",
+        };
+        Err(FitError::NotYet { field: "light", value, legal: "directional lights" })
+    }
 }
 
 fn unit(travel: DVec3) -> Result<DVec3, FitError> {

@@ -1,15 +1,14 @@
 //! The composite: stages in order.
 
-use glam::DVec3;
-
 use crate::error::FitError;
 use crate::fit::bias::Bias;
+use crate::content::Tile;
 use crate::fit::layout::How;
+use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
-use crate::light::Light;
 use crate::report::{LeftOut, Part, Why};
 use crate::split::Split;
 use crate::technique::{FitInput, ShadowTechnique};
@@ -62,6 +61,8 @@ pub struct Remix {
     pub depth: DepthLaw,
     /// Default: automatic.
     pub bias: Bias,
+    /// How many of the texels each of several maps gets. Default: equal shares.
+    pub share: Share,
     /// Default: off, the sharpest.
     pub stabilise: Stabilise,
     /// Limits published warps to the strength that is predicted to be no worse than uniform. Default: on; off
@@ -77,6 +78,7 @@ impl Default for Remix {
             encoding: Encoding::default(),
             depth: DepthLaw::default(),
             bias: Bias::default(),
+            share: Share::default(),
             stabilise: Stabilise::default(),
             guard: true,
         }
@@ -102,7 +104,7 @@ impl ShadowTechnique for Remix {
         self.bias.validate()?;
         self.warp.validate()?;
         self.split.validate()?;
-        let travel = directional(&input.light)?;
+        let travel = input.light.directional()?;
         let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
         // Find what has to be in the map.
         let body = match self.warp {
@@ -119,8 +121,9 @@ impl ShadowTechnique for Remix {
         body.left_out.iter().for_each(|cut| frame.leave_out(cut.part, cut.why));
         // Lay it out, and draw the conclusions: views and uniforms.
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
-        let how = How { warp: self.warp, guard: self.guard, stabilise: self.stabilise };
-        let fitter = Fitter { input: &input, travel, texels, bias: self.bias, how, index: 0 };
+        let how = How { warp: self.warp, guard: self.guard, stabilise: self.stabilise, share: self.share };
+        let tile = Tile::whole(0, input.map.side);
+        let fitter = Fitter { input: &input, travel, tile, texels, bias: self.bias, how, index: 0, split: 0 };
         match self.split {
             Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
                 fitter.slices(&body, &splits, &mut frame);
@@ -137,14 +140,4 @@ impl ShadowTechnique for Remix {
         }
         Ok(frame)
     }
-}
-
-/// The travel of a directional light; other lights are not served yet.
-fn directional(light: &Light) -> Result<DVec3, FitError> {
-    let value = match *light {
-        Light::Directional { travel } => return Ok(travel),
-        Light::Spot { .. } => "a spot light",
-        Light::Point { .. } => "a point light",
-    };
-    Err(FitError::NotYet { field: "light", value, legal: "directional lights" })
 }

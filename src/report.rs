@@ -22,6 +22,8 @@ pub enum Part {
     Border(u8),
     /// The warp of a view, or a part of its strength.
     Warp(u8),
+    /// Texels of a view.
+    Texels(u8),
 }
 
 /// Why it was left out.
@@ -95,6 +97,16 @@ pub enum Why {
         /// Texels that would be wanted.
         wanted: u32,
     },
+    /// Texels of this map are no larger in the picture than those of the worst map of the frame: more would not show.
+    TexelsEnough {
+        /// Texels along a side that it has.
+        side: u32,
+    },
+    /// Texels are worth more in the other maps of the frame.
+    TexelsElsewhere {
+        /// Texels along a side that it has.
+        side: u32,
+    },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
     /// The published strength is predicted to be worse than no warp.
@@ -134,6 +146,7 @@ impl fmt::Display for Part {
             Self::Window(index) => write!(f, "view {index}, window"),
             Self::Border(index) => write!(f, "view {index}, border"),
             Self::Warp(index) => write!(f, "view {index}, warp"),
+            Self::Texels(index) => write!(f, "view {index}, texels"),
         }
     }
 }
@@ -169,6 +182,8 @@ impl fmt::Display for Why {
             Self::WarpTooStrong { asked, limit } => {
                 write!(f, "strength {asked:.4} limited to {limit:.4}: beyond that texels outgrow their neighbours")
             }
+            Self::TexelsEnough { side } => write!(f, "a side of {side} is as fine in the picture as the worst map"),
+            Self::TexelsElsewhere { side } => write!(f, "a side of {side}: the rest is worth more in other maps"),
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }
     }

@@ -22,8 +22,8 @@ pub struct FitInput<'a> {
     /// World position of the origin of render space, the space of the emitted matrices. For small worlds zero; for
     /// large ones the eye, or whatever the engine subtracts before it narrows positions to f32.
     pub origin: DVec3,
-    /// Last frame of the same light: history is an input. Read for [`ShadowView::content`](crate::ShadowView::content)
-    /// alone.
+    /// Last frame of the same light: history is an input. Read for [`ShadowView::content`](crate::ShadowView::content),
+    /// and so that maps keep their sizes where [`Share`](crate::Share) gives them different ones.
     pub previous: Option<&'a ShadowFrame>,
 }
 

@@ -1,4 +1,5 @@
-//! Several maps: the Rust twins of `shaders/select_*.wgsl` and `visibility_many.wgsl`.
+//! Several maps: the Rust twins of `shaders/select_*.wgsl`, `map_many.wgsl` and
+//! `visibility_many.wgsl`.
 //!
 //! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation. The software
 //! renderer of the lab runs on them.
@@ -7,33 +8,65 @@
 //! - Engel, *Cascaded shadow maps*, `ShaderX5`, 2006 (by depth); Valient, *Stable rendering of cascaded shadow maps*,
 //!   `ShaderX6`, 2008 (by containment: the finest map that holds the point).
 
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
-use super::depth::{CompareMap, Lookup, antumbra_filter, antumbra_look};
+use super::depth::{CompareMap, Lookup, antumbra_filter, antumbra_look, antumbra_visible};
 use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
 
-/// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. `maps` are the layers, as
-/// many as the frame has views; a view without a map reads lit.
+/// A map among others in its layer: lookups beyond it read the texels at its rim.
+///
+/// Twin of `antumbra_on_map`, and of `antumbra_sample` for several maps.
+#[derive(Clone, Copy, Debug)]
+pub struct OnMap<'a, M> {
+    layer: &'a M,
+    low: Vec2,
+    high: Vec2,
+}
+
+impl<'a, M: CompareMap> OnMap<'a, M> {
+    /// The map of a view, among `layers`; `None` for layers that there are not.
+    #[must_use]
+    pub fn of(view: &ViewUniforms, layers: &'a [M]) -> Option<Self> {
+        let [left, top, right, bottom] = view.rect;
+        let half = 0.5 * view.bias[3];
+        let layer = layers.get(view.across_u[3] as usize)?;
+        Some(Self { layer, low: Vec2::new(left, top) - half, high: Vec2::new(right, bottom) + half })
+    }
+}
+
+impl<M: CompareMap> CompareMap for OnMap<'_, M> {
+    fn size(&self) -> UVec2 {
+        self.layer.size()
+    }
+
+    fn sample_compare(&self, uv: Vec2, depth: f32) -> f32 {
+        self.layer.sample_compare(uv.max(self.low).min(self.high), depth)
+    }
+}
+
+/// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. A view whose layer is not
+/// among `layers` reads lit.
 #[must_use]
 pub fn antumbra_visibility<M: CompareMap>(
     key: WgslKey,
     uniforms: &ShadowUniforms,
-    maps: &[M],
+    layers: &[M],
     position: Vec3,
     normal: Vec3,
     view_depth: f32,
 ) -> f32 {
     let last = usize::from(key.maps).clamp(1, MAX_VIEWS) - 1;
-    let visible = |index: usize| {
-        let look = antumbra_look(key, &uniforms.views[index], position, normal);
-        maps.get(index).map_or(1.0, |map| antumbra_filter(key.filter, map, &look))
-    };
     if last == 0 {
-        return visible(0);
+        let visible = |map| antumbra_visible(key, &uniforms.views[0], map, position, normal);
+        return layers.first().map_or(1.0, visible);
     }
     if key.select == Select::Finest {
-        return finest(key, uniforms, maps, last, position, normal);
+        return finest(key, uniforms, layers, last, position, normal, view_depth);
     }
+    let visible = |index: usize| {
+        let view = &uniforms.views[index];
+        OnMap::of(view, layers).map_or(1.0, |map| antumbra_visible(key, view, &map, position, normal))
+    };
     let index = antumbra_index(uniforms, last, view_depth);
     let lit = visible(index);
     let [.., from, per_depth] = uniforms.views[index].domain;
@@ -65,24 +98,31 @@ pub fn antumbra_room(view: &ViewUniforms, look: &Lookup) -> f32 {
 fn finest<M: CompareMap>(
     key: WgslKey,
     uniforms: &ShadowUniforms,
-    maps: &[M],
+    layers: &[M],
     last: usize,
     position: Vec3,
     normal: Vec3,
+    view_depth: f32,
 ) -> f32 {
     let (mut lit, mut rest) = (0.0, 1.0);
-    for (view, map) in uniforms.views[..=last].iter().zip(maps) {
+    for view in &uniforms.views[..=last] {
         let look = antumbra_look(key, view, position, normal);
         let room = antumbra_room(view, &look);
         if room < 0.0 {
             continue;
         }
         let share = if key.blend { rest * (room * view.domain[3]).min(1.0) } else { rest };
-        lit += share * antumbra_filter(key.filter, map, &look);
+        lit += share * OnMap::of(view, layers).map_or(1.0, |map| antumbra_filter(key.filter, &map, &look));
         rest -= share;
         if rest <= 0.0 {
             break;
         }
     }
-    if rest < 1.0 { lit / (1.0 - rest) } else { 1.0 }
+    let visibility = if rest < 1.0 { lit / (1.0 - rest) } else { 1.0 };
+    if !key.blend {
+        return visibility;
+    }
+    let fade = (view_depth - uniforms.views[0].across_v[3]) * uniforms.views[0].across_w[3];
+    let fade = fade.clamp(0.0, 1.0);
+    visibility * (1.0 - fade) + fade
 }

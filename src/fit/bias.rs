@@ -31,6 +31,7 @@
 
 use glam::{DVec2, DVec3, DVec4, Vec4};
 
+use crate::content::Tile;
 use crate::error::{FitError, finite};
 use crate::frame::ViewUniforms;
 use crate::math::space::{Clip, Map, Render};
@@ -81,8 +82,8 @@ pub(crate) struct BiasInput<'a> {
     pub(crate) texture_from_render: &'a [DVec4; 3],
     /// Largest coordinates of receivers, render space, each not negative.
     pub(crate) reach: DVec3,
-    /// Side of the map, texels.
-    pub(crate) side: f64,
+    /// Its texels in the layers.
+    pub(crate) tile: Tile,
 }
 
 impl Bias {
@@ -93,8 +94,10 @@ impl Bias {
         let rounding = |row: DVec4| half_ulp * (row.truncate().abs().dot(input.reach) + row.w.abs());
         // What w loses moves a texel by as much of its distance from the middle of the map; w is 1 or more.
         let warped = if input.window.bend.is_none() { 0.0 } else { rounding(input.clip_from_render.row(3)) };
-        let lost_texels = input.side
-            * (rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))) + warped);
+        let [side, of] = [input.tile.side, input.tile.of].map(f64::from);
+        let lost = rounding(input.clip_from_render.row(0)).max(rounding(input.clip_from_render.row(1))) + warped;
+        // Tiles lie elsewhere in their layer than where clip space begins.
+        let lost_texels = side * lost + (of - side) * half_ulp;
         let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
         // How far a plane falls over a texel for each unit of a row along its normal; not at all for a manual bias.
         let automatic = if self == Self::Automatic { 1.0 } else { 0.0 };
@@ -109,7 +112,9 @@ impl Bias {
         ]
         .map(narrowed);
         let (across, growth) = input.across();
-        let [across_u, across_v, across_w] = across.map(|row| (row * automatic).extend(0.0).to_array().map(narrowed));
+        let [mut across_u, across_v, across_w] =
+            across.map(|row| (row * automatic).extend(0.0).to_array().map(narrowed));
+        across_u[3] = input.tile.layer as f32;
         (uniforms.across_u, uniforms.across_v, uniforms.across_w) = (across_u, across_v, across_w);
         let (constant, offset) = match self {
             Self::Automatic => (0.0, 0.0),
@@ -120,7 +125,7 @@ impl Bias {
         };
         // What is added to a reach is lost whatever the filter is.
         let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_reach, offset, growth * automatic, 1.0 / input.side].map(narrowed);
+        uniforms.bias = [lost_reach, offset, growth * automatic, 1.0 / of].map(narrowed);
         // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
         let depth = input.clip_from_render.row(2);
         uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
@@ -132,7 +137,7 @@ impl BiasInput<'_> {
     /// itself a texel outgrows its neighbours in u and in v together, for each unit of W.
     ///
     /// With (u, v) = (U, V)/W and J = ∂(u, v)/∂(p, q), the world step of a texel in u is the first column of J⁻¹ over
-    /// the side, that in v the second one:
+    /// the layer's side, that in v the second one:
     ///
     /// ```text
     /// t_u = −W² (∇V × t − v ∇W × t) / (D · side),   t_v = W² (∇U × t − u ∇W × t) / (D · side)
@@ -147,7 +152,7 @@ impl BiasInput<'_> {
         let anchor = (light.p() * bend.anchor.x + light.q() * bend.anchor.y).extend(1.0);
         let at_anchor = |row: DVec4| row.truncate() - w.truncate() * row.dot(anchor);
         let determinant = -light.travel().dot(at_anchor(u).cross(at_anchor(v)));
-        let scale = -1.0 / (determinant * self.side);
+        let scale = -1.0 / (determinant * f64::from(self.tile.of));
         let across = [u, v, w].map(|row| row.truncate().cross(light.travel()) * scale);
         let growth = w.truncate().dot(across[0]).abs() + w.truncate().dot(across[1]).abs();
         (across, growth)

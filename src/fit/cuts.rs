@@ -37,10 +37,11 @@ pub(crate) struct Cut {
     pub(crate) depth: DepthRange,
 }
 
-/// The slices that get a map, ascending, and what f32 loses of places and depths there.
+/// The slices that get a map, ascending, what f32 loses of places and depths there, and how wide they are.
 pub(crate) struct Cuts {
     pub(crate) slices: ArrayVec<Cut, MAX_VIEWS>,
     pub(crate) margin: f64,
+    pub(crate) profile: Profile,
 }
 
 impl Fitter<'_> {
@@ -78,13 +79,13 @@ impl Fitter<'_> {
                 _ => slices.push(Cut { split, depth: DepthRange { near, far } }),
             }
         }
-        Cuts { slices, margin }
+        Cuts { slices, margin, profile }
     }
 
-    /// As many slices as there are maps. Maps without room for their filter's border do not know what they hold.
+    /// As many slices as there are texels for maps. Maps without room for their filter's border do not know what they hold.
     fn budget(&self, splits: &DepthSplits, frame: &mut ShadowFrame) -> u8 {
         let map = &self.input.map;
-        let budget = u32::from(splits.maps).min(map.views).min(map.layers) as u8;
+        let budget = u32::from(splits.maps).min(map.views).min(self.most_maps()) as u8;
         (budget..splits.maps).for_each(|split| frame.leave_out(Part::Split(split), Why::NoMapLeft));
         match self.texels.too_small() {
             Some(why) if splits.select == Select::Finest => {

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::fit::depth_range::{rounding, rounding_margin};
+use crate::fit::share::Share;
 use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
@@ -42,6 +43,7 @@ pub(crate) struct How {
     /// Whether published warps are limited to what pays.
     pub(crate) guard: bool,
     pub(crate) stabilise: Stabilise,
+    pub(crate) share: Share,
 }
 
 /// The window that is laid around a body.

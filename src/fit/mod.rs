@@ -5,6 +5,7 @@ pub(crate) mod cull;
 pub(crate) mod cuts;
 pub(crate) mod depth_range;
 pub(crate) mod layout;
+pub(crate) mod share;
 pub(crate) mod slices;
 pub(crate) mod snap;
 pub(crate) mod view;

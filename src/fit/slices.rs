@@ -3,7 +3,10 @@
 //! # References
 //! - Zhang, Sun, Xu & Lu, *Parallel-split shadow maps for large-scale virtual environments*, 2006.
 
-use crate::fit::cuts::Cuts;
+use arrayvec::ArrayVec;
+
+use crate::content::Tile;
+use crate::fit::cuts::{Cut, Cuts};
 use crate::fit::snap::Stabilise;
 use crate::fit::view::Fitter;
 use crate::focus::FocusBody;
@@ -17,13 +20,39 @@ use crate::split::depth::DepthSplits;
 const NO_RIM: f32 = -1e30;
 
 impl Fitter<'_> {
-    /// Cuts a body in view into slices, lays each out, and appends their views.
+    /// Cuts a body in view into slices, shares the texels out among them, lays each out, and appends their views.
     ///
     /// Slices without receivers, without casters, or without depth get no map, slices that join their neighbours share
     /// one, and slices behind a map of the whole scene need none: the report says so.
     pub(crate) fn slices(&self, body: &FocusBody, splits: &DepthSplits, frame: &mut ShadowFrame) {
         let range = self.range(body);
-        let Cuts { slices, margin } = self.cuts(body, range, splits, frame);
+        let mut cuts = self.cuts(body, range, splits, frame);
+        let said = frame.left_out.len();
+        let mut served = ArrayVec::<Cut, MAX_VIEWS>::new();
+        // A map of the whole scene that was meant for one slice has to do for all that follow: share again.
+        while let Some(whole) = self.lay_out_all(body, &cuts, splits, range, frame) {
+            frame.take_back(said);
+            let last = cuts.slices.last().map_or(range.far, |cut| cut.depth.far);
+            served = cuts.slices.drain(whole + 1..).chain(served).collect();
+            cuts.slices[whole].depth.far = last;
+        }
+        let view = (frame.views.len() as u8).saturating_sub(1);
+        served.iter().for_each(|next| frame.leave_out(Part::Split(next.split), Why::ServedBy { view }));
+        self.finish(splits, range, frame);
+    }
+
+    /// One map for each slice that needs one; ends early with the number of a slice whose map turns out to be one of the
+    /// whole scene, but was given fewer texels than a layer for that slice alone.
+    fn lay_out_all(
+        &self,
+        body: &FocusBody,
+        cuts: &Cuts,
+        splits: &DepthSplits,
+        range: DepthRange,
+        frame: &mut ShadowFrame,
+    ) -> Option<usize> {
+        let Cuts { slices, margin, .. } = cuts;
+        let tiles = self.tiles(cuts, range);
         let mut before = 0.0;
         for (number, cut) in slices.iter().enumerate() {
             // The slice, and the band in which the one before gives way to it.
@@ -36,8 +65,14 @@ impl Fitter<'_> {
             };
             // One map.
             let index = frame.views.len() as u8;
-            let fitter = Self { index, ..*self };
+            let tile = tiles.get(number).copied().unwrap_or(Tile::whole(index.into(), self.tile.of));
+            let texels = self.texels.of_side(tile.side);
+            let fitter = Self { index, tile, texels, split: cut.split, ..*self };
             let layout = fitter.lay_out(&mut slice, frame);
+            let followed = number + 1 < slices.len();
+            if layout.whole && followed && tile.side < tile.of {
+                return Some(number);
+            }
             if let Err(why) = fitter.view(&slice, &layout, frame) {
                 frame.leave_out(Part::Split(cut.split), why);
                 continue;
@@ -46,14 +81,14 @@ impl Fitter<'_> {
             let last = if layout.whole { slices.last().unwrap_or(cut) } else { cut }.depth;
             let band = f64::from(splits.blend) * (last.far - last.near);
             let served = DepthRange { near, far: last.far };
-            frame.uniforms.views[usize::from(index)].domain = self.domain(splits, served, band);
+            frame.uniforms.views[usize::from(index)].domain = fitter.domain(splits, served, band);
             if layout.whole {
                 let why = Why::ServedBy { view: index };
                 slices[number + 1..].iter().for_each(|next| frame.leave_out(Part::Split(next.split), why));
                 break;
             }
         }
-        self.finish(splits, range, frame);
+        None
     }
 
     /// The eye depths to cut: those of the body; of maps that stand still, the camera's, which do so as well.
@@ -67,7 +102,10 @@ impl Fitter<'_> {
         let inverse = |width: f64| if width > 0.0 { width.recip() } else { 0.0 };
         let domain = match splits.select {
             Select::Depth => [near, far, far - band, inverse(band)],
-            Select::Finest => [near, far, self.texels.read_beyond(), inverse(0.5 * f64::from(splits.blend))],
+            Select::Finest => {
+                let [side, of] = [self.tile.side, self.tile.of].map(f64::from);
+                [near, far, self.texels.read_beyond() / of, inverse(0.5 * f64::from(splits.blend) * (side / of))]
+            }
         };
         domain.map(|depth| depth as f32)
     }
@@ -93,11 +131,17 @@ impl Fitter<'_> {
                 views[index].domain[3] = 0.0;
             }
         }
-        let domain = &mut views[last].domain;
+        let [near, far, ..] = views[last].domain;
         match splits.select {
             Select::Depth if splits.fade => {}
-            Select::Depth => *domain = [domain[0], f32::MAX, 0.0, 0.0],
-            Select::Finest => (domain[2], domain[3]) = (NO_RIM, 1.0),
+            Select::Depth => views[last].domain = [near, f32::MAX, 0.0, 0.0],
+            Select::Finest => {
+                views[last].domain = [near, far, NO_RIM, 1.0];
+                let band = splits.blend * (far - near);
+                if splits.fade && band > 0.0 {
+                    (views[0].across_v[3], views[0].across_w[3]) = (far - band, band.recip());
+                }
+            }
         }
         // Footprints over all views; the error by the share of what is seen in each.
         let seen = self.seen_by_view(range, frame);

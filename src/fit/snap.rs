@@ -67,6 +67,11 @@ pub(crate) fn snapped(
     Ok(Window { light, bend: Bend::NONE, low, high: low + side })
 }
 
+/// Width and height of a snapped window, together, but for what rounding adds; infinite where the frustum has no end.
+pub(crate) fn size(projection: &Projection, depth: DepthRange) -> f64 {
+    4.0 * quantised_up(bounding_sphere(projection, depth).1)
+}
+
 /// Scene windows grow in steps too, so that a moving object at their border changes the texels seldom.
 pub(crate) fn still(window: &Window, texels: f64, origin: DVec3) -> Window {
     let size = window.size();

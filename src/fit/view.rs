@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, DVec4, UVec4};
 
 use crate::aliasing::extremes;
-use crate::content::{Content, Place};
+use crate::content::{Content, Place, Tile};
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding, rounding_margin};
@@ -23,7 +23,9 @@ pub(crate) struct Fitter<'a> {
     pub(crate) input: &'a FitInput<'a>,
     /// Travel of the directional light, unit length.
     pub(crate) travel: DVec3,
-    /// Texels of the map.
+    /// The map's texels in the layers.
+    pub(crate) tile: Tile,
+    /// What they are for.
     pub(crate) texels: Texels,
     /// How receivers are kept from shadowing themselves.
     pub(crate) bias: Bias,
@@ -31,6 +33,8 @@ pub(crate) struct Fitter<'a> {
     pub(crate) how: How,
     /// Number of the view.
     pub(crate) index: u8,
+    /// Number of the split that it is for.
+    pub(crate) split: u8,
 }
 
 /// Texels over the side of a window, and the border around them.
@@ -44,8 +48,8 @@ pub(crate) struct Texels {
     ring: u32,
     /// Texels of border that the filter wants.
     wanted: u32,
-    /// Texels that the filter reads beyond a receiver.
-    reach: f64,
+    /// What reads them.
+    filter: Pcf,
 }
 
 impl Texels {
@@ -54,7 +58,12 @@ impl Texels {
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
         let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2;
         let border = wanted.min(side.saturating_sub(1) / 2);
-        Self { inner: side - 2 * border, border, ring: border.min(1), wanted, reach: filter.reach() }
+        Self { inner: side - 2 * border, border, ring: border.min(1), wanted, filter }
+    }
+
+    /// Those of a map of another side, for the same filter.
+    pub(crate) fn of_side(self, side: u32) -> Self {
+        Self::of(side, self.filter)
     }
 
     /// Why the border is smaller than its filter wants, if it is.
@@ -62,9 +71,9 @@ impl Texels {
         (self.border < self.wanted).then_some(Why::MapTooSmall { border: self.border, wanted: self.wanted })
     }
 
-    /// What a filter reads beyond a receiver, and one texel more: a share of the map's side.
+    /// What a filter reads beyond a receiver, and one texel more.
     pub(crate) fn read_beyond(&self) -> f64 {
-        (self.reach + 1.0) / f64::from(self.inner + 2 * self.border)
+        self.filter.reach() + 1.0
     }
 
     /// Texels of border on each side, at least one.
@@ -124,18 +133,23 @@ impl Fitter<'_> {
             frame
                 .leave_out(Part::Border(self.index), Why::MapTooSmall { border: texels.border, wanted: texels.wanted });
         }
-        let ring = texels.ring;
+        if self.tile.side < self.tile.of {
+            frame.leave_out(Part::Texels(self.index), self.how.share.why(self.tile));
+        }
+        let (ring, corner) = (texels.ring, self.tile.corner);
+        let drawn_side = self.tile.side - 2 * ring;
         let view = ShadowView {
             clip_from_render: clip_from_render.narrow(),
             depth_from_render: clip_from_render.narrow_row(2),
-            viewport: UVec4::new(ring, ring, input.map.side - 2 * ring, input.map.side - 2 * ring),
-            layer: self.index.into(),
+            viewport: UVec4::new(corner.x + ring, corner.y + ring, drawn_side, drawn_side),
+            layer: self.tile.layer,
             cull,
             texel: TexelSize { world: extremes.world, pixels: extremes.pixels },
             warp_strength: strength as f32,
             domain: extremes.domain,
             content: Content::Redraw,
             place: self.place(window, texel, depth),
+            split: self.split,
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
         let content = before.map_or(Content::Redraw, |before| Content::since(&before.place, &view.place));
@@ -168,7 +182,7 @@ impl Fitter<'_> {
             texel,
             low: window.low + origin.truncate(),
             depth: [depth.near + origin.z, depth.far + origin.z],
-            side: self.input.map.side,
+            tile: self.tile,
             uniform: window.bend.is_none(),
         }
     }
@@ -182,8 +196,7 @@ impl Fitter<'_> {
         clip_from_render: &'b Map<Clip, Render>,
     ) -> BiasInput<'b> {
         let reach = vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
-        let (side, ring) = (self.input.map.side, self.texels.ring);
-        let texel = drawn.size() / f64::from(side - 2 * ring);
+        let texel = drawn.size() / f64::from(self.tile.side - 2 * self.texels.ring);
         let depth_range = depth.far - depth.near;
         BiasInput {
             window: drawn,
@@ -192,29 +205,35 @@ impl Fitter<'_> {
             clip_from_render,
             texture_from_render,
             reach,
-            side: f64::from(side),
+            tile: self.tile,
         }
     }
 
-    /// The rows of u, v and w: texture coordinates (times w) from clip coordinates, the viewport's share of the map.
+    /// Corner and side of the tile, and the width of its ring, texture coordinates.
+    fn in_texture(&self) -> (DVec2, f64, f64) {
+        let of = f64::from(self.tile.of);
+        (self.tile.corner.as_dvec2() / of, f64::from(self.tile.side) / of, f64::from(self.texels.ring) / of)
+    }
+
+    /// The rows of u, v and w: texture coordinates (times w) from clip coordinates, the viewport's share of the layer.
     fn texture_rows(&self, clip_from_render: &Map<Clip, Render>) -> [DVec4; 3] {
-        let ring = f64::from(self.texels.ring) / f64::from(self.input.map.side);
-        let half = 0.5 - ring;
+        let (corner, side, ring) = self.in_texture();
+        let (centre, half) = (corner + 0.5 * side, 0.5 * side - ring);
         let w = clip_from_render.row(3);
-        [clip_from_render.row(0) * half + w * 0.5, clip_from_render.row(1) * -half + w * 0.5, w]
+        [clip_from_render.row(0) * half + w * centre.x, clip_from_render.row(1) * -half + w * centre.y, w]
     }
 
     /// What the receiver shader needs besides the bias.
     fn uniforms(&self, texture_from_render: &[DVec4; 3], clip_from_render: &Map<Clip, Render>) -> ViewUniforms {
         let [u, v, w] = texture_from_render.map(|row| row.as_vec4().to_array());
-        let ring = f64::from(self.texels.ring) / f64::from(self.input.map.side);
-        let (low, high) = (ring as f32, (1.0 - ring) as f32);
+        let (corner, side, ring) = self.in_texture();
+        let (low, high) = (corner + ring, corner + side - ring);
         ViewUniforms {
             u_from_render: u,
             v_from_render: v,
             w_from_render: w,
             depth_from_render: clip_from_render.narrow_row(2).to_array(),
-            rect: [low, low, high, high],
+            rect: [low.x, low.y, high.x, high.y].map(|at| at as f32),
             ..ViewUniforms::LIT
         }
     }

@@ -68,12 +68,15 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, setting
     }
     // Rasterise from the light.
     let start = Instant::now();
-    let drawn: Vec<_> = frame.views.iter().map(|view| draw(subject, frame, view, setting.origin)).collect();
+    let mut layers: Vec<Vec<f32>> = Vec::new();
+    for view in &frame.views {
+        draw(subject, frame, view, setting.origin, &mut layers);
+    }
     let casters_ms = start.elapsed().as_secs_f64() * 1e3;
     // Project each visible point into the map that serves it.
     let start = Instant::now();
     let size = UVec2::splat(frame.map.side);
-    let maps: Vec<_> = drawn.iter().map(|depth| DepthMap { size, depth }).collect();
+    let maps: Vec<_> = layers.iter().map(|depth| DepthMap { size, depth }).collect();
     let lit = |hit: &Option<Hit>| match hit {
         Some(Hit { position, normal, .. }) => {
             let eye_depth = setting.camera.eye_depth(*position, setting.origin) as f32;
@@ -86,8 +89,8 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, setting
     CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
 }
 
-/// One map of a frame: every object that may cast into it.
-fn draw(subject: &Subject, frame: &ShadowFrame, view: &ShadowView, origin: DVec3) -> Vec<f32> {
+/// One map of a frame: every object that may cast into it. Layers are made as they are wanted.
+fn draw(subject: &Subject, frame: &ShadowFrame, view: &ShadowView, origin: DVec3, layers: &mut Vec<Vec<f32>>) {
     let mut drawn = DepthTarget::new(view.viewport.z, view.viewport.w, DepthMode::LessEqual);
     let objects = subject.objects.iter().zip(&subject.model.objects);
     let casters: Vec<_> =
@@ -96,17 +99,18 @@ fn draw(subject: &Subject, frame: &ShadowFrame, view: &ShadowView, origin: DVec3
     let depth_from_render = frame.wgsl.shape.writes_depth().then_some(view.depth_from_render);
     let pass = RasterPass { clip_from_render: view.clip_from_render, depth_from_render, origin };
     rasterise(&mut drawn, &subject.model, &casters, &pass);
-    placed(&drawn, view.viewport, frame.map.side)
+    let (layer, side) = (view.layer as usize, frame.map.side as usize);
+    if layers.len() <= layer {
+        layers.resize_with(layer + 1, || vec![DepthMode::LessEqual.cleared(); side * side]);
+    }
+    place(&drawn, view.viewport, side, &mut layers[layer]);
 }
 
-/// A view's depths at their place in the map; the rest is cleared.
-fn placed(drawn: &DepthTarget, viewport: UVec4, side: u32) -> Vec<f32> {
+/// Puts a view's depths at their place in a layer.
+fn place(drawn: &DepthTarget, viewport: UVec4, side: usize, layer: &mut [f32]) {
     let [left, top, width, _] = viewport.to_array().map(|length| length as usize);
-    let side = side as usize;
-    let mut map = vec![drawn.mode.cleared(); side * side];
     for (row, depths) in drawn.depth.chunks_exact(width).enumerate() {
         let start = (top + row) * side + left;
-        map[start..start + width].copy_from_slice(depths);
+        layer[start..start + width].copy_from_slice(depths);
     }
-    map
 }

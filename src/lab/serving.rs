@@ -79,6 +79,7 @@ mod tests {
         both.views.push(whole.views[0].clone());
         both.uniforms.views[0].domain = [0.0, middle as f32, 0.0, 0.0];
         both.uniforms.views[1] = whole.uniforms.views[0];
+        both.uniforms.views[1].across_u[3] = 1.0;
         // The rest is in nobody's domain.
         both.uniforms.views[1].domain = [middle as f32, depths[depths.len() - depths.len() / 10] as f32, 0.0, 0.0];
         (near, whole, both)

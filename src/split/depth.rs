@@ -51,8 +51,7 @@ pub struct DepthSplits {
     /// Share of a slice, from its far end, over which it gives way to the next one, 0 (a hard edge) to 0.5. Costs a
     /// second lookup there.
     pub blend: f32,
-    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth. Found
-    /// by depth only.
+    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth.
     pub fade: bool,
     /// Pixels that a texel may measure for more maps not to pay, 0 (use all of them) to 16. Shadow edges are off by
     /// half of it.

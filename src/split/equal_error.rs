@@ -46,7 +46,7 @@ const CLASSES: usize = 48;
 const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// What a slice costs, as a function of its planes.
-struct Cost<'a> {
+pub(crate) struct Cost<'a> {
     profile: &'a Profile,
     range: DepthRange,
     /// Classes over the logarithm of depth; over depth where it has none.
@@ -105,7 +105,8 @@ fn span(DepthRange { near, far }: DepthRange) -> f64 {
 }
 
 impl<'a> Cost<'a> {
-    fn of(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
+    /// From samples of what is seen, O(samples); none is fine.
+    pub(crate) fn of(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
         let mut cost = Self { profile, range, scale: CLASSES as f64 / span(range), seen: [0.0; CLASSES + 1] };
         // Count what is seen; what is not known is spread evenly.
         let mut count = 0.0;
@@ -141,8 +142,13 @@ impl<'a> Cost<'a> {
         self.seen[whole] + (self.seen[whole + 1] - self.seen[whole]) * (class - whole as f64)
     }
 
+    /// (3).
+    pub(crate) fn seen(&self, near: f64, far: f64) -> f64 {
+        self.before(far) - self.before(near)
+    }
+
     /// One summand of (1).
     fn of_slice(&self, near: f64, far: f64) -> f64 {
-        (self.before(far) - self.before(near)) * self.profile.size(near, far)
+        self.seen(near, far) * self.profile.size(near, far)
     }
 }

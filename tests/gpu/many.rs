@@ -61,6 +61,7 @@ fn several(parts: &[ShadowFrame; 2], maps: u8, (select, blend): (Select, bool)) 
     frame.views.push(second.views[0].clone());
     frame.views[1].layer = 1;
     frame.uniforms.views[1] = second.uniforms.views[0];
+    frame.uniforms.views[1].across_u[3] = 1.0;
     let band = if blend { 1.0 / BAND as f32 } else { 0.0 };
     let [first, last] = match select {
         Select::Depth => [[0.0, MIDDLE as f32, (MIDDLE - BAND) as f32, band], [MIDDLE as f32, f32::MAX, f32::MAX, 0.0]],

@@ -111,6 +111,7 @@ fn several(dice: &mut Dice, key: WgslKey, views: usize) -> ShadowFrame {
         view.layer = index as u32;
         whole.views.push(view);
         whole.uniforms.views[index] = placed(dice, key, &fitted.uniforms.views[0], index);
+        whole.uniforms.views[index].across_u[3] = index as f32;
     }
     whole
 }
