@@ -17,7 +17,7 @@ struct AntumbraBlur {
     padding: u32,
 }
 
-// Half-width of the box in texels of u and v at a texel, whose world size differs from texel to texel of a warped map.
+// Half-width of the box in texels of u and v at a texel of the tile, whose world size differs from texel to texel of a warped map.
 fn antumbra_blur_radius(blur: AntumbraBlur, texel: vec2f) -> vec2f {
     let uv = (vec2f(blur.tile.xy) + texel + 0.5) / f32(blur.tile.w);
     let inverse_w = max(dot(blur.inverse_w.xyz, vec3f(uv, 1.0)), ANTUMBRA_BLUR_SMALLEST);
@@ -25,7 +25,10 @@ fn antumbra_blur_radius(blur: AntumbraBlur, texel: vec2f) -> vec2f {
     let step_v = uv.x * blur.across_w.xyz - blur.across_u.xyz;
     let steps = max(vec2f(length(step_u), length(step_v)), vec2f(ANTUMBRA_BLUR_SMALLEST));
     let texels = blur.radius * inverse_w * inverse_w / steps;
-    return clamp(select(vec2f(-blur.radius), texels, blur.radius >= 0.0), vec2f(0.0), vec2f(ANTUMBRA_BLUR_MOST));
+    // Towards the rim it narrows: what is not drawn is not known.
+    let room = min(texel, f32(blur.tile.z) - 1.0 - texel) - 1.0;
+    let most = clamp(room / select(1.0, ANTUMBRA_BLUR_BELL_REACH, blur.bell != 0u), vec2f(0.0), vec2f(ANTUMBRA_BLUR_MOST));
+    return min(select(vec2f(-blur.radius), texels, blur.radius >= 0.0), most);
 }
 
 // Most texels of a half-width: more cost more than they are worth.

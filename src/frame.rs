@@ -7,6 +7,7 @@ use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 use crate::content::{Content, Place};
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
+use crate::texel::{BlurUniforms, Texel};
 
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
@@ -21,7 +22,9 @@ pub const MAX_CULL_PLANES: usize = 8;
 /// Which shader text a technique needs. A byte or two; compare it with the key a pipeline was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct WgslKey {
-    /// How the map is filtered.
+    /// What a texel of the map stores that receivers read.
+    pub texel: Texel,
+    /// How depths are compared; [`Pcf::Hardware2x2`] for moments, which are not compared.
     pub filter: Pcf,
     /// Whether positions are divided by w on their way into the map.
     pub shape: MapShape,
@@ -36,7 +39,7 @@ pub struct WgslKey {
 
 impl Default for WgslKey {
     fn default() -> Self {
-        Self { filter: Pcf::default(), shape: MapShape::default(), maps: 1, select: Select::default(), blend: false }
+        Self { texel: Texel::default(), filter: Pcf::default(), shape: MapShape::default(), maps: 1, select: Select::default(), blend: false }
     }
 }
 
@@ -198,6 +201,8 @@ pub struct ShadowView {
     /// What has to be drawn of it if casters have not moved since `FitInput::previous`. Snapped maps of still scenes
     /// scroll, or stay.
     pub content: Content,
+    /// What the passes that filter its texels have to know, for maps of moments.
+    pub blur: BlurUniforms,
     /// Where its texels are in the world.
     pub(crate) place: Place,
     /// Number of the split that it was made for.
@@ -267,7 +272,7 @@ impl CullVolume {
     }
 }
 
-/// The receiver shader's uniform block. A key reads as many elements as it has maps (176 bytes each).
+/// The receiver shader's uniform block. A key reads as many elements as it has maps (208 bytes each).
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowUniforms {
@@ -314,6 +319,10 @@ pub struct ViewUniforms {
     /// the length of that band (0: no band). Found by containment: what a filter reads beyond a receiver, and one over
     /// the width of the band along the rim in which it gives way, texture coordinates.
     pub domain: [f32; 4],
+    /// Maps of moments with mips: texels of the map over a pixel at a render-space position, where w is 1: a row.
+    pub pixel_from_render: [f32; 4],
+    /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z, w: 0.
+    pub moments: [f32; 4],
 }
 
 impl ViewUniforms {
@@ -330,5 +339,7 @@ impl ViewUniforms {
         across_v: [0.0; 4],
         across_w: [0.0; 4],
         domain: [0.0, f32::MAX, 0.0, 0.0],
+        pixel_from_render: [0.0; 4],
+        moments: [0.0; 4],
     };
 }

@@ -57,17 +57,21 @@ mod clear;
 mod depth_range;
 mod error;
 mod layout;
+mod prefilter;
 
 use arrayvec::ArrayVec;
 
 pub use depth_range::DepthRangeProbe;
 pub use error::GpuError;
 pub use layout::{caster_layout, layout_entries};
+pub use prefilter::{supported, texture_format};
 pub use wgpu;
 
 use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUniforms, WgslKey};
 use crate::scene::MapBudget;
+use crate::texel::Texel;
 use clear::{TileClear, limit_to, tile_of};
+use prefilter::Prefilter;
 use layout::{CASTER_BYTES, bind_entries, caster_bind_group, map_dimension, most_views, uniform_bytes};
 
 /// Format of a depth map: the precision that the bias is computed for.
@@ -95,6 +99,8 @@ pub struct ShadowMaps {
     side: u32,
     texture: wgpu::Texture,
     view: wgpu::TextureView,
+    /// For maps of moments.
+    prefilter: Option<Prefilter>,
     /// What casters are drawn into: a view for each layer.
     attachments: ArrayVec<wgpu::TextureView, MAX_VIEWS>,
     /// For maps that share a layer; one map has its own.
@@ -123,10 +129,21 @@ impl ShadowMaps {
         // The maps, and the sampler that compares with them.
         let layers = layers(key, map);
         let texture = depth_texture(device, label, map.side, layers);
-        let dimension = Some(map_dimension(key));
-        let view = texture.create_view(&wgpu::TextureViewDescriptor { label, dimension, ..Default::default() });
+        let dimension = map_dimension(key);
+        let prefilter = match key.texel {
+            Texel::Depth => None,
+            Texel::Moments(moments) => Some(Prefilter::new(device, label, moments, &texture, dimension)),
+        };
+        let view = match &prefilter {
+            Some(prefilter) => prefilter.view().clone(),
+            None => texture.create_view(&wgpu::TextureViewDescriptor {
+                label,
+                dimension: Some(dimension),
+                ..Default::default()
+            }),
+        };
         let attachments = (0..layers).map(|layer| attachment(&texture, label, layer)).collect();
-        let compare = device.create_sampler(&comparison_sampler(label));
+        let compare = device.create_sampler(&sampler(label, key));
         // What receivers read.
         let uniforms = lit_uniforms(device, label);
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -153,6 +170,7 @@ impl ShadowMaps {
             side: map.side,
             texture,
             view,
+            prefilter,
             attachments,
             clear: (key.maps > 1).then(|| TileClear::new(device)),
             compare,
@@ -195,7 +213,25 @@ impl ShadowMaps {
             caster[16..].copy_from_slice(&view.depth_from_render.to_array());
             queue.write_buffer(&self.casters, offset, bytemuck::bytes_of(&caster));
         }
+        if let Some(prefilter) = &self.prefilter {
+            prefilter.prepare(queue, frame);
+        }
         Ok(())
+    }
+
+    /// Filters the maps of a frame, for keys that store moments: two passes a view, and one for each level of the mip
+    /// chain. Call it when all casters are drawn. Nothing is recorded for maps of depths, and for frames without views.
+    ///
+    /// `stamps` gives the timestamps of each pass, by its number and their count.
+    pub fn filter<'stamps>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &ShadowFrame,
+        stamps: &mut dyn FnMut(usize, usize) -> Option<wgpu::RenderPassTimestampWrites<'stamps>>,
+    ) {
+        if let Some(prefilter) = &self.prefilter {
+            prefilter.run(encoder, frame, stamps);
+        }
     }
 
     fn check_viewport(&self, index: usize, view: &ShadowView) -> Result<(), GpuError> {
@@ -294,9 +330,16 @@ impl ShadowMaps {
         &self.texture
     }
 
-    /// All of it as shaders read it: a `texture_depth_2d`, or a `texture_depth_2d_array` for keys of several maps.
+    /// The filtered maps with all levels, for keys that store moments.
     #[must_use]
-    pub fn depth_view(&self) -> &wgpu::TextureView {
+    pub fn moments_texture(&self) -> Option<&wgpu::Texture> {
+        self.prefilter.as_ref().map(Prefilter::texture)
+    }
+
+    /// What shaders read: a `texture_depth_2d`, or a `texture_depth_2d_array` for keys of several maps; the filtered maps
+    /// for keys that store moments.
+    #[must_use]
+    pub fn map_view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
@@ -310,14 +353,19 @@ impl ShadowMaps {
     /// here).
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        u64::from(self.side) * u64::from(self.side) * u64::from(self.layers()) * DEPTH_TEXEL_BYTES
+        let depths = u64::from(self.side) * u64::from(self.side) * u64::from(self.layers()) * DEPTH_TEXEL_BYTES;
+        depths + self.prefilter.as_ref().map_or(0, Prefilter::bytes)
     }
 }
 
-/// Features that the maps of a key need from the device: none for depth maps.
+/// Features that the maps of a key need from the device: none for depths, and for moments what their format needs;
+/// [`supported`] chooses one that a device has.
 #[must_use]
-pub fn required_features(_key: WgslKey) -> wgpu::Features {
-    wgpu::Features::empty()
+pub fn required_features(key: WgslKey) -> wgpu::Features {
+    match key.texel {
+        Texel::Depth => wgpu::Features::empty(),
+        Texel::Moments(moments) => prefilter::required_features(moments),
+    }
 }
 
 /// How casters are written: nearest wins, no hardware bias (the receiver's bias is exact, and a second one would only
@@ -365,16 +413,20 @@ fn attachment(texture: &wgpu::Texture, label: Option<&str>, layer: u32) -> wgpu:
     })
 }
 
-/// Bilinear comparison: lit where the receiver is not farther than the texel.
-fn comparison_sampler(label: Option<&str>) -> wgpu::SamplerDescriptor<'_> {
+/// Bilinear comparison: lit where the receiver is not farther than the texel. Moments are interpolated, between levels too,
+/// where their format allows it.
+fn sampler(label: Option<&str>, key: WgslKey) -> wgpu::SamplerDescriptor<'_> {
+    let linear = !matches!(key.texel, Texel::Moments(moments) if !moments.linear);
+    let filter = if linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
     wgpu::SamplerDescriptor {
         label,
         address_mode_u: wgpu::AddressMode::ClampToEdge,
         address_mode_v: wgpu::AddressMode::ClampToEdge,
         address_mode_w: wgpu::AddressMode::ClampToEdge,
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        compare: Some(wgpu::CompareFunction::LessEqual),
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: if linear { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
+        compare: (key.texel == Texel::Depth).then_some(wgpu::CompareFunction::LessEqual),
         ..Default::default()
     }
 }

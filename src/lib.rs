@@ -98,6 +98,7 @@ pub mod lab;
 
 pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use content::Content;
+pub use encoding::stage::{Encoding, Prefilter, Radius};
 pub use error::FitError;
 pub use fit::bias::Bias;
 pub use fit::share::Share;
@@ -107,10 +108,10 @@ pub use frame::{
     ShadowUniforms, ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
 pub use light::Light;
-pub use remix::{DepthLaw, Encoding, Remix};
+pub use remix::{DepthLaw, Remix};
 pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
 pub use split::{DepthSplits, Scheme, Split};
 pub use technique::{FitInput, ShadowTechnique};
-pub use texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
+pub use texel::{BlurUniforms, CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
 pub use warp::{Focus, Warp};

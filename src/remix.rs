@@ -1,32 +1,20 @@
 //! The composite: stages in order.
 
+use crate::encoding::stage::Encoding;
 use crate::error::FitError;
 use crate::fit::bias::Bias;
+use crate::fit::blur;
 use crate::content::Tile;
 use crate::fit::layout::How;
 use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
-use crate::frame::{MapShape, Pcf, ShadowFrame, WgslKey};
+use crate::frame::{MapShape, ShadowFrame, WgslKey};
 use crate::report::{LeftOut, Part, Why};
 use crate::split::Split;
 use crate::technique::{FitInput, ShadowTechnique};
 use crate::warp::Warp;
-
-/// What a map stores, and how it is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Encoding {
-    /// Linear light depth, percentage-closer filtered.
-    Depth(Pcf),
-}
-
-impl Default for Encoding {
-    fn default() -> Self {
-        Self::Depth(Pcf::default())
-    }
-}
 
 /// What depth the texels of a warped map hold. Uniform maps hold linear depth either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,7 +75,7 @@ impl Default for Remix {
 
 impl ShadowTechnique for Remix {
     fn wgsl_key(&self) -> WgslKey {
-        let Encoding::Depth(filter) = self.encoding;
+        let (texel, filter) = self.encoding.key();
         let warped = self.warp.bends() && self.stabilise == Stabilise::Off;
         let shape = match (warped, self.depth) {
             (false, _) => MapShape::Affine,
@@ -95,7 +83,7 @@ impl ShadowTechnique for Remix {
             (true, DepthLaw::Projective) => MapShape::ProjectiveDepth,
         };
         let (select, blend) = self.split.selection();
-        WgslKey { filter, shape, maps: self.split.maps(), select, blend }
+        WgslKey { texel, filter, shape, maps: self.split.maps(), select, blend }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {
@@ -104,6 +92,7 @@ impl ShadowTechnique for Remix {
         self.bias.validate()?;
         self.warp.validate()?;
         self.split.validate()?;
+        self.encoding.validate()?;
         let travel = input.light.directional()?;
         let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
         // Find what has to be in the map.
@@ -123,12 +112,15 @@ impl ShadowTechnique for Remix {
         let texels = Texels::of(input.map.side, frame.wgsl.filter);
         let how = How { warp: self.warp, guard: self.guard, stabilise: self.stabilise, share: self.share };
         let tile = Tile::whole(0, input.map.side);
-        let fitter = Fitter { input: &input, travel, tile, texels, bias: self.bias, how, index: 0, split: 0 };
+        let (bias, encoding) = (self.bias, self.encoding);
+        let fitter = Fitter { input: &input, travel, tile, texels, bias, encoding, how, index: 0, split: 0 };
+        blur::report(frame.wgsl.texel, &mut frame);
         match self.split {
             Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
                 fitter.slices(&body, &splits, &mut frame);
             }
             split => {
+                let fitter = Fitter { texels: fitter.texels_for(&body, input.map.side), ..fitter };
                 let layout = fitter.lay_out(&mut body, &mut frame);
                 if let Err(why) = fitter.view(&body, &layout, &mut frame) {
                     frame.leave_out(Part::Light, why);

@@ -107,6 +107,11 @@ pub enum Why {
         /// Texels along a side that it has.
         side: u32,
     },
+    /// The format of the moments is too coarse for thin shadows: casters nearer to their receivers than this leak.
+    FormatLoses {
+        /// Standard deviation of depths that the format makes, share of the map's depth range.
+        depth: f64,
+    },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
     /// The published strength is predicted to be worse than no warp.
@@ -184,6 +189,9 @@ impl fmt::Display for Why {
             }
             Self::TexelsEnough { side } => write!(f, "a side of {side} is as fine in the picture as the worst map"),
             Self::TexelsElsewhere { side } => write!(f, "a side of {side}: the rest is worth more in other maps"),
+            Self::FormatLoses { depth } => {
+                write!(f, "the format loses {:.1} % of the depth range: near contacts leak", 100.0 * depth)
+            }
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }
     }

@@ -1,21 +1,24 @@
 //! Techniques by name, with the paper each is from.
 
+use crate::encoding::stage::{Encoding, Prefilter};
 use crate::frame::Select;
 use crate::remix::Remix;
 use crate::split::{DepthSplits, Scheme, Split};
+use crate::texel::{MomentFormat, MomentKind, Moments};
 use crate::warp::{Focus, Warp};
 
 /// Makes a remix with its default options.
 pub type Maker = fn() -> Remix;
 
-/// A function for each technique, and the list of them all: `function "name" split, warp`, behind its documentation.
+/// A function for each technique, and the list of them all: `function "name" split, warp, encoding`, behind its
+/// documentation.
 macro_rules! named {
-    ($($(#[$doc:meta])+ $function:ident $name:literal $split:expr, $warp:expr;)+) => {
+    ($($(#[$doc:meta])+ $function:ident $name:literal $split:expr, $warp:expr $(, $encoding:expr)?;)+) => {
         $(
             $(#[$doc])+
             #[must_use]
             pub fn $function() -> Remix {
-                Remix { split: $split, warp: $warp, ..Remix::default() }
+                Remix { split: $split, warp: $warp, $(encoding: $encoding,)? ..Remix::default() }
             }
         )+
 
@@ -32,6 +35,12 @@ const PSSM: DepthSplits = DepthSplits {
     enough: 0.0,
     ..DepthSplits::DEFAULT
 };
+
+/// Moments of 32 bits with mips, averaged over three texels.
+fn moments(kind: MomentKind) -> Encoding {
+    let moments = Moments::new(kind, MomentFormat::Float32);
+    Encoding::Moments(Prefilter::of(moments.read(moments.linear, true)))
+}
 
 named! {
     /// The standard shadow map: one uniform map over the whole scene. Its map does not depend on the camera.
@@ -76,6 +85,31 @@ named! {
 
     /// Cascades: four maps where they pay most, each with the warp that pays there. This crate's own.
     cascades "cascades" Split::Depth(DepthSplits::DEFAULT), Warp::LeastError;
+
+    /// The variance shadow map, focused: two moments, blurred.
+    ///
+    /// W. Donnelly, A. Lauritzen, *Variance shadow maps*, I3D 2006.
+    vsm "vsm" Split::One, Warp::Focused, moments(MomentKind::Variance);
+
+    /// The exponential shadow map, focused: the mean of exponentials of depth.
+    ///
+    /// T. Annen, T. Mertens, H.-P. Seidel, E. Flerackers, J. Kautz, *Exponential shadow maps*, Graphics Interface 2008.
+    esm "esm" Split::One, Warp::Focused, moments(MomentKind::Exponential);
+
+    /// The convolution shadow map, focused: a Fourier series of 8 terms.
+    ///
+    /// T. Annen, T. Mertens, P. Bekaert, H.-P. Seidel, J. Kautz, *Convolution shadow maps*, EGSR 2007.
+    convolution "convolution" Split::One, Warp::Focused, moments(MomentKind::Convolution);
+
+    /// The exponential variance shadow map, focused: variance of two exponentials.
+    ///
+    /// A. Lauritzen, M. McCool, *Layered variance shadow maps*, Graphics Interface 2008.
+    evsm "evsm" Split::One, Warp::Focused, moments(MomentKind::ExponentialVarianceFour);
+
+    /// The moment shadow map, focused: four moments, Hamburger.
+    ///
+    /// C. Peters, R. Klein, *Moment shadow mapping*, I3D 2015.
+    msm "msm" Split::One, Warp::Focused, moments(MomentKind::Hamburger);
 }
 
 /// The technique of that name, if there is one.

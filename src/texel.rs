@@ -1,5 +1,7 @@
 //! What a texel of the map that receivers read stores: a depth, or moments of depths that are averaged first.
 
+use bytemuck::{Pod, Zeroable};
+
 /// What is stored per texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Texel {
@@ -54,9 +56,36 @@ pub enum MomentFormat {
     Unorm8,
 }
 
+/// What the filter has to know of a view. The layout equals `AntumbraBlur` in the shader, member by member.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BlurUniforms {
+    /// The view's texels in its layer: first x and y, side; and the layer's side.
+    pub tile: [u32; 4],
+    /// World steps from texel to texel: `t_u` = w² (V − v W), `t_v` = w² (u W − U). This is U, x to z; the last member is 0.
+    pub across_u: [f32; 4],
+    /// V of those steps.
+    pub across_v: [f32; 4],
+    /// W of those steps.
+    pub across_w: [f32; 4],
+    /// 1/w at texture coordinates: dot(row, (u, v, 1)); the last member is 0.
+    pub inverse_w: [f32; 4],
+    /// Half the width of the box: world units where it is not negative, else texels, negated.
+    pub radius: f32,
+    /// 1: a bell instead of a box.
+    pub bell: u32,
+    /// First term of a series, for what is stored as one.
+    pub first_term: u32,
+    /// Unused.
+    pub padding: u32,
+}
+
 /// Terms of the series of [`MomentKind::Convolution`]: four would blur shadows over a quarter of the depth range, 16
 /// take 32 bytes a texel.
 pub const CONVOLUTION_TERMS: u32 = 8;
+
+/// Last level of a mip chain: tiles of a layer stay apart in it as long as they are 64 texels wide.
+const LAST_LEVEL: u32 = 6;
 
 impl MomentKind {
     /// All of them.
@@ -141,6 +170,12 @@ impl Moments {
         Self { kind, format, linear: format != MomentFormat::Float32, mips: false }
     }
 
+    /// The same, interpolated by samplers or by the shader, with or without mips.
+    #[must_use]
+    pub const fn read(self, linear: bool, mips: bool) -> Self {
+        Self { linear, mips, ..self }
+    }
+
     /// Every kind in every format that holds it, each read in every way there is.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_kind = |kind: MomentKind| kind.formats().iter().map(move |format| Self::new(kind, *format));
@@ -150,6 +185,20 @@ impl Moments {
                 [false, true].map(|mips| Self { linear: *linear, mips, ..moments })
             })
         })
+    }
+
+    /// Last level of the mip chain of a map with this side: a texel of level 6 is 64 texels wide, which is as blurred
+    /// as pictures ask for.
+    #[must_use]
+    pub const fn last_level(self, side: u32) -> u32 {
+        let levels = if side > 1 { side.ilog2() } else { 0 };
+        if !self.mips {
+            0
+        } else if levels < LAST_LEVEL {
+            levels
+        } else {
+            LAST_LEVEL
+        }
     }
 
     /// Which moments.

@@ -37,7 +37,7 @@ use std::borrow::Cow;
 use arrayvec::ArrayVec;
 
 use crate::frame::{MAX_VIEWS, MapShape, Pcf, Select, WgslKey};
-use crate::texel::Moments;
+use crate::texel::{Moments, Texel};
 
 /// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,65 +52,123 @@ pub struct Bindings {
 pub const BINDING_COUNT: u32 = 3;
 
 /// Most fragments of a key.
-const MAX_FRAGMENTS: usize = 11;
+const MAX_FRAGMENTS: usize = 18;
 
 /// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
 ///
-/// The texts live in the binary: no allocation for one map. For several, what reads the map reads an array of them
-/// (`texture_depth_2d_array` in place of `texture_depth_2d`), and those texts are made anew.
+/// The texts live in the binary: no allocation for one map of depths. For several, and for maps of moments, the texts
+/// that name the texture and its sampler are made anew.
 #[must_use]
 pub fn library(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
-    let read = |text: &'static str| {
-        if key.maps > 1 { text.replace("texture_depth_2d,", "texture_depth_2d_array,").into() } else { text.into() }
-    };
-    fragments(key).into_iter().map(read).collect()
+    let is_plain = texture(key) == "texture_depth_2d";
+    let named = |text: Cow<'static, str>| if is_plain { text } else { with_types(&text, key).into() };
+    fragments(key).into_iter().map(named).collect()
 }
 
-fn fragments(key: WgslKey) -> ArrayVec<&'static str, MAX_FRAGMENTS> {
-    let mut fragments = ArrayVec::new();
-    // What is known of a map, and the maps.
-    fragments.push(include_str!("../shaders/view.wgsl"));
-    if key.maps > 1 {
-        fragments.push(MAPS[usize::from(key.maps.min(MAX_VIEWS as u8)) - 2]);
-        fragments.push(include_str!("../shaders/uniforms_many.wgsl"));
-        fragments.push(include_str!("../shaders/map_many.wgsl"));
-    } else {
-        fragments.push(include_str!("../shaders/uniforms_one.wgsl"));
-        fragments.push(include_str!("../shaders/map_one.wgsl"));
+/// The type of the map.
+fn texture(key: WgslKey) -> &'static str {
+    match (key.texel, is_arrayed(key)) {
+        (Texel::Depth, false) => "texture_depth_2d",
+        (Texel::Depth, true) => "texture_depth_2d_array",
+        (Texel::Moments(_), false) => "texture_2d<f32>",
+        (Texel::Moments(_), true) => "texture_2d_array<f32>",
     }
-    fragments.push(CASTER);
+}
+
+/// Whether the map is an array of layers: several maps, or one with more numbers than a texel holds.
+pub(crate) fn is_arrayed(key: WgslKey) -> bool {
+    key.maps > 1 || matches!(key.texel, Texel::Moments(moments) if moments.layers() > 1)
+}
+
+/// The type of its sampler.
+const fn sampler(key: WgslKey) -> &'static str {
+    match key.texel {
+        Texel::Depth => "sampler_comparison",
+        Texel::Moments(_) => "sampler",
+    }
+}
+
+/// A text with the types of a key, whichever it was written with.
+fn with_types(text: &str, key: WgslKey) -> String {
+    const TEXTURES: [&str; 4] =
+        ["texture_depth_2d_array,", "texture_depth_2d,", "texture_2d_array<f32>,", "texture_2d<f32>,"];
+    let typed = format!("{},", texture(key));
+    let text = TEXTURES.iter().fold(text.to_owned(), |text, other| text.replace(other, &typed));
+    text.replace("sampler_comparison", sampler(key))
+}
+
+fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
+    let mut fragments = ArrayVec::new();
+    let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
+    // What is known of a map, and the maps.
+    push(include_str!("../shaders/view.wgsl"));
+    if key.maps > 1 {
+        push(MAPS[usize::from(key.maps.min(MAX_VIEWS as u8)) - 2]);
+        push(include_str!("../shaders/uniforms_many.wgsl"));
+    } else {
+        push(include_str!("../shaders/uniforms_one.wgsl"));
+    }
+    push(match (key.texel, is_arrayed(key)) {
+        (Texel::Depth, false) => include_str!("../shaders/map_one.wgsl"),
+        (Texel::Depth, true) => include_str!("../shaders/map_many.wgsl"),
+        (Texel::Moments(_), false) => include_str!("../shaders/map_one_moments.wgsl"),
+        (Texel::Moments(_), true) => include_str!("../shaders/map_many_moments.wgsl"),
+    });
+    push(CASTER);
     // Where a receiver is looked up.
     match key.shape {
-        MapShape::Affine => fragments.push(include_str!("../shaders/lookup.wgsl")),
-        MapShape::Projective => fragments.push(include_str!("../shaders/law_linear.wgsl")),
-        MapShape::ProjectiveDepth => fragments.push(include_str!("../shaders/law_projective.wgsl")),
+        MapShape::Affine => push(include_str!("../shaders/lookup.wgsl")),
+        MapShape::Projective => push(include_str!("../shaders/law_linear.wgsl")),
+        MapShape::ProjectiveDepth => push(include_str!("../shaders/law_projective.wgsl")),
     }
     if key.shape != MapShape::Affine {
-        fragments.push(include_str!("../shaders/lookup_projective.wgsl"));
+        push(include_str!("../shaders/lookup_projective.wgsl"));
     }
     // What is read there.
-    match key.filter {
-        Pcf::Point => fragments.push(include_str!("../shaders/pcf_point.wgsl")),
-        Pcf::Hardware2x2 => fragments.push(include_str!("../shaders/pcf_hardware.wgsl")),
-        Pcf::Box3x3 => {
-            fragments.push(TAP);
-            fragments.push(include_str!("../shaders/pcf_box_three.wgsl"));
-        }
-        Pcf::Box5x5 => {
-            fragments.push(TAP);
-            fragments.push(include_str!("../shaders/pcf_box_five.wgsl"));
-        }
+    match key.texel {
+        Texel::Depth => pcf(key.filter).into_iter().for_each(&mut push),
+        Texel::Moments(moments) => fragments.extend(moments::read(moments, is_arrayed(key))),
     }
-    fragments.push(match key.shape {
-        MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
-        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
-    });
-    fragments.push(if key.maps > 1 {
-        include_str!("../shaders/visibility_many.wgsl")
-    } else {
-        include_str!("../shaders/visibility_one.wgsl")
-    });
+    fragments.extend(look(key).into_iter().map(Cow::Borrowed));
+    fragments.push(Cow::Borrowed(match is_arrayed(key) {
+        true => include_str!("../shaders/visibility_many.wgsl"),
+        false => include_str!("../shaders/visibility_one.wgsl"),
+    }));
     fragments
+}
+
+/// How depths are compared.
+fn pcf(filter: Pcf) -> ArrayVec<&'static str, 2> {
+    const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
+    match filter {
+        Pcf::Point => [include_str!("../shaders/pcf_point.wgsl")].into_iter().collect(),
+        Pcf::Hardware2x2 => [include_str!("../shaders/pcf_hardware.wgsl")].into_iter().collect(),
+        Pcf::Box3x3 => [TAP, include_str!("../shaders/pcf_box_three.wgsl")].into(),
+        Pcf::Box5x5 => [TAP, include_str!("../shaders/pcf_box_five.wgsl")].into(),
+    }
+}
+
+/// Where a receiver is looked up, its bias applied.
+fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
+    let Texel::Moments(moments) = key.texel else {
+        return core::iter::once(match key.shape {
+            MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
+            MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
+        })
+        .collect();
+    };
+    [
+        if moments.mips {
+            include_str!("../shaders/level_many.wgsl")
+        } else {
+            include_str!("../shaders/level_one.wgsl")
+        },
+        match key.shape {
+            MapShape::Affine => include_str!("../shaders/look_affine_moments.wgsl"),
+            MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective_moments.wgsl"),
+        },
+    ]
+    .into()
 }
 
 /// The number of maps, as the shader knows it, from 2 on.
@@ -135,8 +193,6 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 /// derivatives are `dpdx(position)` and `dpdy(position)`; with one map, `view` is `antumbra_uniforms.view`, with
 /// several found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
-
-const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
 
 /// What an engine calls, for one map.
 const ONE_MAP: &str = "
@@ -164,7 +220,7 @@ fn antumbra_lit(look: AntumbraLookup) -> f32 {
 pub fn module(key: WgslKey, bindings: Bindings) -> String {
     let Bindings { group, first } = bindings;
     let [uniforms, map, compare] = [0, 1, 2].map(|offset| first.saturating_add(offset));
-    let texture = if key.maps > 1 { "texture_depth_2d_array" } else { "texture_depth_2d" };
+    let (texture, sampler) = (texture(key), sampler(key));
     let mut text = String::new();
     for fragment in library(key) {
         text.push_str(&fragment);
@@ -174,13 +230,13 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
         text,
         "@group({group}) @binding({uniforms}) var<uniform> antumbra_uniforms: AntumbraUniforms;\n\
          @group({group}) @binding({map}) var antumbra_map: {texture};\n\
-         @group({group}) @binding({compare}) var antumbra_compare: sampler_comparison;\n"
+         @group({group}) @binding({compare}) var antumbra_compare: {sampler};\n"
     );
     for part in calls(key) {
         text.push('\n');
         text.push_str(part);
     }
-    if key.maps == 1 && key.shape == MapShape::Affine {
+    if key.has_two_stages() {
         text.push_str(TWO_STAGES);
     }
     text
@@ -189,7 +245,7 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
 /// The whole text of the passes that filter a map of depths into one of moments, for engines that do without the module
 /// `gpu`: vertex entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_blur_along_u` (reads
 /// depths), `antumbra_blur_along_v` (reads what that wrote) and `antumbra_halve` (a level of mips from the one above).
-/// Bindings in group 0: 0 [`BlurUniforms`](crate::encoding::blur::BlurUniforms), 1 the depths, 2 what is stored.
+/// Bindings in group 0: 0 [`BlurUniforms`](crate::BlurUniforms), 1 the depths, 2 what is stored.
 #[must_use]
 pub fn prefilter(moments: Moments) -> String {
     moments::prefilter(moments)
@@ -218,13 +274,21 @@ fn calls(key: WgslKey) -> ArrayVec<&'static str, 2> {
 impl WgslKey {
     /// Every key, for tests and for engines that build their pipelines up front.
     pub fn all() -> impl Iterator<Item = Self> {
-        let each_filter = |shape| Pcf::ALL.into_iter().map(move |filter| Self { filter, shape, ..Self::default() });
-        MapShape::ALL.into_iter().flat_map(each_filter).flat_map(|key| {
+        let depths = Pcf::ALL.into_iter().map(|filter| Self { filter, ..Self::default() });
+        let moments = Moments::all().map(|moments| Self { texel: Texel::Moments(moments), ..Self::default() });
+        let shaped = |key: Self| MapShape::ALL.into_iter().map(move |shape| Self { shape, ..key });
+        depths.chain(moments).flat_map(shaped).flat_map(|key| {
             let many = (2..=MAX_VIEWS as u8).flat_map(move |maps| {
                 let ways = Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]);
                 ways.map(move |(select, blend)| Self { maps, select, blend, ..key })
             });
             core::iter::once(key).chain(many)
         })
+    }
+
+    /// Whether its text has the lookup in two stages, `antumbra_place` and `antumbra_lit`.
+    #[must_use]
+    pub fn has_two_stages(self) -> bool {
+        self.maps == 1 && self.shape == MapShape::Affine && self.texel == Texel::Depth
     }
 }

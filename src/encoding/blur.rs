@@ -12,34 +12,10 @@
 //! # References
 //! - Lauritzen, *Summed-area variance shadow maps*, GPU Gems 3, 2007 (separable filters of moments).
 
-use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::exponential::{antumbra_exponential_mean, antumbra_exponential_part};
-
-/// What the filter has to know of a view. The layout equals `AntumbraBlur` in the shader, member by member.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct BlurUniforms {
-    /// The view's texels in its layer: first x and y, side; and the layer's side.
-    pub tile: [u32; 4],
-    /// U of (1), x to z; the last member is 0.
-    pub across_u: [f32; 4],
-    /// V of (1).
-    pub across_v: [f32; 4],
-    /// W of (1).
-    pub across_w: [f32; 4],
-    /// 1/w at texture coordinates: dot(row, (u, v, 1)); the last member is 0.
-    pub inverse_w: [f32; 4],
-    /// Half the width of the box: world units where it is not negative, else texels, negated.
-    pub radius: f32,
-    /// 1: a bell instead of a box.
-    pub bell: u32,
-    /// First term of a series, for what is stored as one.
-    pub first_term: u32,
-    /// Unused.
-    pub padding: u32,
-}
+use crate::texel::BlurUniforms;
 
 /// Twin of the shader's constant: most texels of a half-width.
 pub const ANTUMBRA_BLUR_MOST: f32 = 32.0;
@@ -50,20 +26,23 @@ const ANTUMBRA_BLUR_SMALLEST: f32 = 1e-30;
 /// Twin of the shader's constant: half-widths at which a bell is cut off.
 const ANTUMBRA_BLUR_BELL_REACH: f32 = 1.44;
 
-/// Twin of `antumbra_blur_radius`: half-width in texels of u and v, at a texel of the view.
+/// Twin of `antumbra_blur_radius`: half-width in texels of u and v, at a texel of the tile. Towards the rim, beyond which
+/// nothing is drawn, it narrows.
 #[must_use]
 pub fn antumbra_blur_radius(blur: &BlurUniforms, texel: Vec2) -> Vec2 {
     let [across_u, across_v, across_w, inverse_w] =
         [blur.across_u, blur.across_v, blur.across_w, blur.inverse_w].map(|row| Vec4::from_array(row).xyz());
-    let [x, y, _, of] = blur.tile;
+    let [x, y, side, of] = blur.tile;
     let uv = (Vec2::new(x as f32, y as f32) + texel + 0.5) / of as f32;
     let inverse_w = inverse_w.dot(Vec3::new(uv.x, uv.y, 1.0)).max(ANTUMBRA_BLUR_SMALLEST);
     let step_u = across_v - uv.y * across_w;
     let step_v = uv.x * across_w - across_u;
     let steps = Vec2::new(step_u.length(), step_v.length()).max(Vec2::splat(ANTUMBRA_BLUR_SMALLEST));
     let texels = blur.radius * inverse_w * inverse_w / steps;
+    let room = texel.min(side as f32 - 1.0 - texel) - 1.0;
+    let most = room / if blur.bell == 0 { 1.0 } else { ANTUMBRA_BLUR_BELL_REACH };
     let radius = if blur.radius >= 0.0 { texels } else { Vec2::splat(-blur.radius) };
-    radius.clamp(Vec2::ZERO, Vec2::splat(ANTUMBRA_BLUR_MOST))
+    radius.min(most.clamp(Vec2::ZERO, Vec2::splat(ANTUMBRA_BLUR_MOST)))
 }
 
 /// Twin of `antumbra_blur_reach`: how many texels to either side weigh anything.

@@ -1,4 +1,4 @@
-//! What a texel stores and how it is read: the Rust twins of the shaders, in f32 as they are.
+//! What a texel stores and how it is read: the Rust twins of the shaders, in f32 as they are, and the stage of a remix.
 
 pub mod blur;
 pub mod convolution;
@@ -7,4 +7,5 @@ pub mod exponential;
 pub mod footprint;
 pub mod moments;
 pub mod split;
+pub(crate) mod stage;
 pub mod variance;

@@ -145,7 +145,7 @@ impl BiasInput<'_> {
     ///
     /// where D = W³ det J is constant and t is the travel of light. The change of W along them is W² ∇W · (…), to which
     /// the second term adds nothing.
-    fn across(&self) -> ([DVec3; 3], f64) {
+    pub(crate) fn across(&self) -> ([DVec3; 3], f64) {
         let [u, v, w] = *self.texture_from_render;
         let (light, bend) = (&self.window.light, &self.window.bend);
         // D at the anchor, where W is 1.

@@ -1,6 +1,7 @@
 //! The stages between a body and a view.
 
 pub(crate) mod bias;
+pub(crate) mod blur;
 pub(crate) mod cull;
 pub(crate) mod cuts;
 pub(crate) mod depth_range;

@@ -66,7 +66,7 @@ impl Fitter<'_> {
             // One map.
             let index = frame.views.len() as u8;
             let tile = tiles.get(number).copied().unwrap_or(Tile::whole(index.into(), self.tile.of));
-            let texels = self.texels.of_side(tile.side);
+            let texels = self.texels_for(&slice, tile.side);
             let fitter = Self { index, tile, texels, split: cut.split, ..*self };
             let layout = fitter.lay_out(&mut slice, frame);
             let followed = number + 1 < slices.len();

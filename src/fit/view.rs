@@ -4,7 +4,9 @@ use glam::{DVec2, DVec3, DVec4, UVec4};
 
 use crate::aliasing::extremes;
 use crate::content::{Content, Place, Tile};
+use crate::encoding::stage::Encoding;
 use crate::fit::bias::{Bias, BiasInput};
+use crate::fit::blur::Placed;
 use crate::fit::cull;
 use crate::fit::depth_range::{DepthAlongLight, rounding, rounding_margin};
 use crate::fit::layout::{How, Layout};
@@ -14,6 +16,7 @@ use crate::frame::{Pcf, ShadowFrame, ShadowView, TexelSize, ViewUniforms};
 use crate::math::space::{Clip, Map, Render};
 use crate::report::{Part, Why};
 use crate::technique::FitInput;
+use crate::texel::BlurUniforms;
 use crate::warp::window::Window;
 
 /// What a body is fitted with.
@@ -29,6 +32,8 @@ pub(crate) struct Fitter<'a> {
     pub(crate) texels: Texels,
     /// How receivers are kept from shadowing themselves.
     pub(crate) bias: Bias,
+    /// What texels store.
+    pub(crate) encoding: Encoding,
     /// How windows are laid.
     pub(crate) how: How,
     /// Number of the view.
@@ -50,20 +55,36 @@ pub(crate) struct Texels {
     wanted: u32,
     /// What reads them.
     filter: Pcf,
+    /// Texels that are blurred to either side before they are read.
+    kernel: u32,
 }
 
 impl Texels {
     /// The filter reads up to its reach beyond a point that the bias has moved by up to √2 reaches across the light;
     /// one more texel absorbs snapping, and one is the ring. Maps that are too small for that have what they can.
     pub(crate) fn of(side: u32, filter: Pcf) -> Self {
-        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2;
+        Self::with(side, filter, 0)
+    }
+
+    fn with(side: u32, filter: Pcf, kernel: u32) -> Self {
+        let wanted = (filter.reach() * (1.0 + core::f64::consts::SQRT_2)).ceil() as u32 + 2 + kernel;
         let border = wanted.min(side.saturating_sub(1) / 2);
-        Self { inner: side - 2 * border, border, ring: border.min(1), wanted, filter }
+        Self { inner: side - 2 * border, border, ring: border.min(1), wanted, filter, kernel }
+    }
+
+    /// The same, blurred by so many texels to either side before they are read.
+    pub(crate) fn blurred(self, kernel: u32) -> Self {
+        Self::with(self.inner + 2 * self.border, self.filter, kernel)
+    }
+
+    /// Texels that are blurred to either side.
+    pub(crate) fn kernel(&self) -> u32 {
+        self.kernel
     }
 
     /// Those of a map of another side, for the same filter.
     pub(crate) fn of_side(self, side: u32) -> Self {
-        Self::of(side, self.filter)
+        Self::with(side, self.filter, self.kernel)
     }
 
     /// Why the border is smaller than its filter wants, if it is.
@@ -119,7 +140,15 @@ impl Fitter<'_> {
         let clip_from_render = drawn.clip_from_ray(depth.near, depth.far) * light.ray_from_render();
         let rows = self.texture_rows(&clip_from_render);
         let mut uniforms = self.uniforms(&rows, &clip_from_render);
-        self.bias.write(&self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render), &mut uniforms);
+        let bias = self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render);
+        self.bias.write(&bias, &mut uniforms);
+        let blur = match self.encoding {
+            Encoding::Depth(_) => BlurUniforms::default(),
+            Encoding::Moments(prefilter) => {
+                let placed = Placed { rows: &rows, across: bias.across().0, light, texel: bias.texel };
+                self.blur(&prefilter, &placed, texels, &mut uniforms)
+            }
+        };
         let squares = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length_squared);
         let same = window.bend.is_none().then(|| (texel * texel).to_array());
         let mut extremes =
@@ -148,6 +177,7 @@ impl Fitter<'_> {
             warp_strength: strength as f32,
             domain: extremes.domain,
             content: Content::Redraw,
+            blur,
             place: self.place(window, texel, depth),
             split: self.split,
         };

@@ -3,6 +3,7 @@
 use core::num::NonZeroU64;
 
 use crate::frame::{MAX_VIEWS, ViewUniforms, WgslKey};
+use crate::texel::Texel;
 
 /// Bytes that a caster's vertex shader reads: the matrix, and for warped maps the row of linear depth after it.
 pub(super) const CASTER_BYTES: u64 = (size_of::<glam::Mat4>() + size_of::<glam::Vec4>()) as u64;
@@ -25,18 +26,35 @@ pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) 
         entry(
             1,
             wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
+                sample_type: sample_type(key),
                 view_dimension: map_dimension(key),
                 multisampled: false,
             },
         ),
-        entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+        entry(2, wgpu::BindingType::Sampler(sampler_type(key))),
     ]
+}
+
+/// What shaders of a key read of a texel.
+fn sample_type(key: WgslKey) -> wgpu::TextureSampleType {
+    match key.texel {
+        Texel::Depth => wgpu::TextureSampleType::Depth,
+        Texel::Moments(moments) => wgpu::TextureSampleType::Float { filterable: moments.linear },
+    }
+}
+
+/// How shaders of a key sample the maps.
+fn sampler_type(key: WgslKey) -> wgpu::SamplerBindingType {
+    match key.texel {
+        Texel::Depth => wgpu::SamplerBindingType::Comparison,
+        Texel::Moments(moments) if moments.linear => wgpu::SamplerBindingType::Filtering,
+        Texel::Moments(_) => wgpu::SamplerBindingType::NonFiltering,
+    }
 }
 
 /// How shaders of a key see the maps.
 pub(super) fn map_dimension(key: WgslKey) -> wgpu::TextureViewDimension {
-    if key.maps > 1 { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 }
+    if crate::wgsl::is_arrayed(key) { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 }
 }
 
 /// Bytes of `AntumbraUniforms` for a key: an array of views.

@@ -8,17 +8,12 @@ use core::num::NonZeroU64;
 
 use arrayvec::ArrayVec;
 
-use crate::encoding::blur::BlurUniforms;
 use crate::frame::{MAX_VIEWS, ShadowFrame};
-use crate::texel::{MomentFormat, Moments};
-
-/// Levels of the mip chain at most: a texel of the last one is 64 texels wide, which is as blurred as a picture asks
-/// for; tiles of a layer stay apart as long as they are as wide.
-pub const MOST_LEVELS: u32 = 7;
+use crate::texel::{BlurUniforms, MomentFormat, Moments};
 
 /// Features that an adapter has to have for a format, beyond what every adapter has.
 #[must_use]
-pub fn required_features(moments: Moments) -> wgpu::Features {
+pub(super) fn required_features(moments: Moments) -> wgpu::Features {
     let exact = match moments.format() {
         MomentFormat::Unorm16 => wgpu::Features::TEXTURE_FORMAT_16BIT_NORM,
         _ => wgpu::Features::empty(),
@@ -37,7 +32,8 @@ pub fn supported(wanted: Moments, features: wgpu::Features) -> Moments {
     let linear = |format| format != MomentFormat::Float32 || features.contains(wgpu::Features::FLOAT32_FILTERABLE);
     let in_format = |format| {
         let moments = Moments::new(wanted.kind(), format);
-        Moments { linear: linear(moments.format()), mips: wanted.mips, ..moments }
+        let (linear, mips) = (linear(moments.format()), wanted.mips);
+        moments.read(linear, mips)
     };
     let asked = in_format(wanted.format());
     let has = |moments: &Moments| features.contains(required_features(*moments));
@@ -102,7 +98,7 @@ impl Prefilter {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
         let pipeline = |entry, layout: &wgpu::BindGroupLayout| pass_pipeline(device, &module, entry, layout, format);
         // Textures.
-        let level_count = if moments.mips { side.ilog2().clamp(1, MOST_LEVELS - 1) + 1 } else { 1 };
+        let level_count = moments.last_level(side) + 1;
         let texture = |layers, levels| target(device, label, side, layers, levels, format);
         let maps = texture(layers * moments.layers(), level_count);
         let scratch = texture(1, 1).create_view(&wgpu::TextureViewDescriptor::default());

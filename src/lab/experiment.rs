@@ -14,7 +14,8 @@ use crate::error::FitError;
 use crate::fit::snap::Stabilise;
 use crate::frame::{Select, ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
-use crate::remix::{Encoding, Remix};
+use crate::encoding::stage::{Encoding, Prefilter, Radius};
+use crate::remix::Remix;
 use crate::split::{Scheme, Split};
 use crate::technique::ShadowTechnique;
 use crate::warp::Warp;
@@ -266,7 +267,10 @@ impl Shot {
 /// Names of a remix's stages: split, warp, encoding.
 #[must_use]
 pub fn stage_names(remix: &Remix) -> [String; 3] {
-    let Encoding::Depth(filter) = remix.encoding;
+    let encoding = match remix.encoding {
+        Encoding::Depth(filter) => format!("depth {}", filter.name()),
+        Encoding::Moments(prefilter) => moments_name(&prefilter),
+    };
     let warp = match remix.warp {
         Warp::Uniform => "uniform".to_owned(),
         Warp::Focused => "focused".to_owned(),
@@ -278,7 +282,18 @@ pub fn stage_names(remix: &Remix) -> [String; 3] {
         Warp::Fixed { strength } => format!("strength {strength}"),
     };
     let snapped = if remix.stabilise == Stabilise::SnapTexels { ", snapped" } else { "" };
-    [split_name(remix), format!("{warp}{snapped}"), format!("depth {}", filter.name())]
+    [split_name(remix), format!("{warp}{snapped}"), encoding]
+}
+
+/// Name of moments, their format, and the width of their blur in texels or world units.
+fn moments_name(prefilter: &Prefilter) -> String {
+    let moments = prefilter.moments;
+    let blur = match prefilter.radius {
+        Radius::Texels(radius) => format!("{} texels", 2.0 * radius),
+        Radius::World(radius) => format!("{} wide", 2.0 * radius),
+    };
+    let mips = if moments.mips { ", mips" } else { "" };
+    format!("{} {}, {blur}{mips}", moments.kind().name(), moments.format().name())
 }
 
 /// Name of a remix's split.

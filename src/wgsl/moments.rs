@@ -57,6 +57,47 @@ fn numbers(moments: Moments) -> String {
     }
 }
 
+/// Most fragments that read a map of moments.
+const MAX_READ: usize = MAX_STORED + 5;
+
+/// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps are
+/// layers of an array.
+pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str>, MAX_READ> {
+    let mut fragments: ArrayVec<_, MAX_READ> = stored(moments).into_iter().collect();
+    let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
+    push(include_str!("../../shaders/darkened.wgsl"));
+    // What is stored at a place.
+    push(match (moments.linear, arrayed) {
+        (true, false) => include_str!("../../shaders/sample_linear_one.wgsl"),
+        (true, true) => include_str!("../../shaders/sample_linear_many.wgsl"),
+        (false, false) => include_str!("../../shaders/sample_loads_one.wgsl"),
+        (false, true) => include_str!("../../shaders/sample_loads_many.wgsl"),
+    });
+    match (moments.linear, moments.mips) {
+        (true, _) => {}
+        (false, false) => push(include_str!("../../shaders/sample_loads_level.wgsl")),
+        (false, true) => push(include_str!("../../shaders/sample_loads_levels.wgsl")),
+    }
+    // What it says.
+    let sixteen = moments.format() == MomentFormat::Unorm16;
+    match moments.kind() {
+        MomentKind::Variance => push(include_str!("../../shaders/read_variance.wgsl")),
+        MomentKind::Exponential => push(include_str!("../../shaders/read_exponential.wgsl")),
+        MomentKind::ExponentialVarianceTwo => push(include_str!("../../shaders/read_exponential_variance_two.wgsl")),
+        MomentKind::ExponentialVarianceFour => push(include_str!("../../shaders/read_exponential_variance.wgsl")),
+        MomentKind::Convolution => {}
+        MomentKind::Hamburger if sixteen => push(include_str!("../../shaders/read_hamburger_sixteen.wgsl")),
+        MomentKind::Hamburger => push(include_str!("../../shaders/read_hamburger.wgsl")),
+        MomentKind::Hausdorff if sixteen => push(include_str!("../../shaders/read_hausdorff_sixteen.wgsl")),
+        MomentKind::Hausdorff => push(include_str!("../../shaders/read_hausdorff.wgsl")),
+    }
+    push(match moments.kind() {
+        MomentKind::Convolution => include_str!("../../shaders/read_convolution.wgsl"),
+        _ => include_str!("../../shaders/read_moments.wgsl"),
+    });
+    fragments
+}
+
 /// The whole text of the passes that filter a map of depths into one of moments: entry points and bindings in group 0.
 #[must_use]
 pub(super) fn prefilter(moments: Moments) -> String {

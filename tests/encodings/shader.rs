@@ -23,7 +23,8 @@ use crate::sets::Set;
 use crate::support;
 use crate::support::compute::compute;
 
-const FRAGMENTS: [&str; 8] = [
+const FRAGMENTS: [&str; 9] = [
+    include_str!("../../shaders/darkened.wgsl"),
     include_str!("../../shaders/chebyshev.wgsl"),
     include_str!("../../shaders/variance.wgsl"),
     include_str!("../../shaders/exponential.wgsl"),

@@ -28,7 +28,7 @@ pub(crate) fn host(key: WgslKey, bindings: Bindings) -> String {
 
 /// Whether a key's lookup can be split over two stages.
 pub(crate) fn has_two_stages(key: WgslKey) -> bool {
-    key.shape == MapShape::Affine && key.maps == 1
+    key.has_two_stages()
 }
 
 /// Stages around everything else that a key has, given the names of the host's matrix and row of depth. Casters of an

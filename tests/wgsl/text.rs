@@ -177,7 +177,7 @@ fn layouts_agree() {
         ("across_w", offset_of!(ViewUniforms, across_w)),
         ("domain", offset_of!(ViewUniforms, domain)),
     ];
-    assert_eq!(size_of::<ViewUniforms>(), 176);
+    assert_eq!(size_of::<ViewUniforms>(), 208);
     for (key, _, shader) in libraries() {
         assert_eq!(members(&shader.module, "AntumbraView"), (view.to_vec(), size_of::<ViewUniforms>()), "{key:?}");
         let (uniforms, span) = members(&shader.module, "AntumbraUniforms");

@@ -131,10 +131,13 @@ impl Gpu {
             }))
         };
         let adapter = adapter.map_err(|error| unavailable(&error))?;
-        // Everything it can hold, and timestamps if it has them.
+        // Everything it can hold; timestamps, and formats of moments, if it has them.
+        let wanted = wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::FLOAT32_FILTERABLE
+            | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("antumbra laboratory"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & wanted,
             required_limits: adapter.limits(),
             ..Default::default()
         };

@@ -111,7 +111,7 @@ impl Host {
     /// which of several maps their fragments read.
     pub(super) fn of(key: WgslKey) -> Self {
         match key.filter {
-            Pcf::Point | Pcf::Hardware2x2 if has_two_stages(key) => Self::Placed,
+            Pcf::Point | Pcf::Hardware2x2 if key.has_two_stages() => Self::Placed,
             _ => Self::Whole,
         }
     }
@@ -146,14 +146,9 @@ pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
     library_receivers(gpu, key, Host::of(key))
 }
 
-/// Whether the library has the lookup of a key in two stages.
-fn has_two_stages(key: WgslKey) -> bool {
-    key.shape == MapShape::Affine && key.maps <= 1
-}
-
 /// The library's receivers in any host.
 pub(super) fn library_receivers(gpu: &Gpu, key: WgslKey, host: Host) -> Pair {
-    let placed = if has_two_stages(key) { include_str!("light_placed.wgsl") } else { "" };
+    let placed = if key.has_two_stages() { include_str!("light_placed.wgsl") } else { "" };
     let text = [&wgsl::module(key, Bindings { group: 1, first: 0 }), include_str!("light_whole.wgsl"), placed].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("maps"),

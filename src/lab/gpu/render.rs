@@ -11,6 +11,7 @@ use super::{Gpu, GpuFailure, GpuScene};
 use crate::camera::Camera;
 use crate::frame::{ShadowFrame, ShadowView, WgslKey};
 use crate::gpu::{GpuError, ShadowMaps};
+use crate::texel::Texel;
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,16 +86,20 @@ impl Renderer {
         let stopwatch = Stopwatch::new(gpu);
         stopwatch.time(|encoder, _| shot.depth_pass(encoder))?;
         // Draw the passes that are timed, in turns.
-        let (mut casters, mut receivers) = (Vec::new(), Vec::new());
+        let filtered = self.key.texel != Texel::Depth && !frame.views.is_empty();
+        let (mut casters, mut filters, mut receivers) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..options.repetitions.max(1) {
             casters.push(stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?);
+            if filtered {
+                filters.push(stopwatch.time(|encoder, stamps| shot.filter_passes(encoder, stamps))?);
+            }
             receivers.push(stopwatch.time(|encoder, stamps| {
                 shot.receiver_pass(encoder, stamps, &self.receivers, maps.bind_group());
             })?);
         }
         let timings = PassTimes {
             casters_ms: if frame.views.is_empty() { 0.0 } else { median(&mut casters) },
-            filter_ms: 0.0,
+            filter_ms: if filtered { median(&mut filters) } else { 0.0 },
             receivers_ms: median(&mut receivers),
             clock: stopwatch.clock(),
         };
@@ -169,6 +174,11 @@ impl<'a> Shot<'a> {
             pass.set_bind_group(0, self.maps.caster_bind_group(), &[self.maps.caster_offset(index)]);
             self.scene.draw(&mut pass, batches, &self.renderer.casters);
         }
+    }
+
+    /// Filters the maps.
+    pub(super) fn filter_passes(&self, encoder: &mut wgpu::CommandEncoder, stamps: Stamps) {
+        self.maps.filter(encoder, self.frame, &mut |index, count| stamps.of_pass(index, count));
     }
 
     /// Draws the camera's depth.

@@ -1,0 +1,9 @@
+// Texels from a receiver to the farthest texel read, and the same for one tap.
+const ANTUMBRA_REACH: f32 = 1.0;
+const ANTUMBRA_TAP_REACH: f32 = 1.0;
+
+// One sample of what was averaged before.
+fn antumbra_filter(map: texture_2d<f32>, linear: sampler, look: AntumbraLookup) -> f32 {
+    let stored = antumbra_stored_at(map, linear, look);
+    return antumbra_darkened(antumbra_read(stored, clamp(look.depth, 0.0, 1.0), look.slope), look.dark);
+}

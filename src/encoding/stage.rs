@@ -1,0 +1,96 @@
+//! The stage of a remix: what a map stores, how it is filtered, and how it is read.
+
+use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
+use crate::error::{FitError, finite};
+use crate::frame::Pcf;
+use crate::texel::{MomentKind, Moments, Texel};
+
+/// What a map stores, and how it is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Encoding {
+    /// Linear light depth, percentage-closer filtered.
+    Depth(Pcf),
+    /// Moments of linear light depth, blurred before they are read.
+    Moments(Prefilter),
+}
+
+impl Default for Encoding {
+    fn default() -> Self {
+        Self::Depth(Pcf::default())
+    }
+}
+
+/// How moments are filtered and read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prefilter {
+    /// Which moments.
+    pub moments: Moments,
+    /// Half the width of the blur.
+    pub radius: Radius,
+    /// A bell of the same deviation instead of a box: smoother, 1.4 times as many texels.
+    pub bell: bool,
+    /// Light up to this share is taken for bleeding and removed, 0 (none) to 0.9. Penumbras lose their outer part with
+    /// it.
+    pub dark: f32,
+}
+
+/// A distance on a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Radius {
+    /// Texels, 0 to 32: as wide in the picture as texels are.
+    Texels(f32),
+    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most 32 texels.
+    World(f32),
+}
+
+/// Largest radius, world units: far beyond use, far below overflow.
+const LARGEST_RADIUS: f64 = 1e9;
+
+/// Most light that may be taken for bleeding: at 1 nothing would be lit.
+const MOST_DARK: f64 = 0.9;
+
+impl Prefilter {
+    /// Moments, averaged over three texels.
+    #[must_use]
+    pub const fn of(moments: Moments) -> Self {
+        Self { moments, radius: Radius::Texels(1.5), bell: false, dark: 0.0 }
+    }
+
+    /// How far receivers are lifted for the blur, as a share of its radius: where a slanted plane is averaged, some of
+    /// it lies before its middle. Two moments know that it is spread; four, and two of them bent, take the near part
+    /// for a caster.
+    pub(crate) const fn lifted(&self) -> f64 {
+        match self.moments.kind() {
+            MomentKind::Variance | MomentKind::Exponential | MomentKind::ExponentialVarianceTwo => 0.0,
+            MomentKind::Convolution
+            | MomentKind::ExponentialVarianceFour
+            | MomentKind::Hamburger
+            | MomentKind::Hausdorff => 1.0,
+        }
+    }
+}
+
+impl Encoding {
+    /// What a texel stores, and how depths are compared: as samplers do for moments, which are not.
+    pub(crate) const fn key(&self) -> (Texel, Pcf) {
+        match self {
+            Self::Depth(filter) => (Texel::Depth, *filter),
+            Self::Moments(prefilter) => (Texel::Moments(prefilter.moments), Pcf::Hardware2x2),
+        }
+    }
+
+    /// Checks its numbers.
+    pub(crate) fn validate(&self) -> Result<(), FitError> {
+        let Self::Moments(prefilter) = self else { return Ok(()) };
+        let within = |field, value: f32, high: f64, legal| {
+            let value = finite(field, f64::from(value))?;
+            if (0.0..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
+        };
+        within("encoding.dark", prefilter.dark, MOST_DARK, "0 to 0.9")?;
+        match prefilter.radius {
+            Radius::Texels(radius) => within("encoding.radius", radius, f64::from(ANTUMBRA_BLUR_MOST), "0 to 32"),
+            Radius::World(radius) => within("encoding.radius", radius, LARGEST_RADIUS, "0 to 1e9"),
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What the filter of a map of moments has to know: how wide to blur, where texels lie in the world, and how far
+//! receivers are lifted for it.
+
+use glam::{DMat3, DVec2, DVec3, DVec4};
+
+use crate::encoding::blur::{ANTUMBRA_BLUR_MOST, antumbra_blur_reach};
+use crate::encoding::stage::{Encoding, Prefilter, Radius};
+use crate::fit::snap::{self, Stabilise};
+use crate::fit::view::{Fitter, Texels};
+use crate::focus::FocusBody;
+use crate::frame::{ShadowFrame, ViewUniforms};
+use crate::light_space::LightSpace;
+use crate::report::{Part, Why};
+use crate::texel::{BlurUniforms, MomentFormat, MomentKind, Texel};
+
+/// Shortest extent across the light by which a world radius is divided, world units: what is thinner is blurred as much
+/// as can be.
+const THINNEST: f64 = 1e-30;
+
+/// Loss of variance, share of the depth range squared, from which a format is said to lose shadows: a standard
+/// deviation of 3 % of the range. Lower would warn of 16-bit integers, whose penumbras are a hundredth as deep.
+const MUCH_LOST: f32 = 1e-3;
+
+/// What a filter reads of the map, where it lies in the world.
+pub(crate) struct Placed<'a> {
+    /// Rows of u, v (times w) and w.
+    pub(crate) rows: &'a [DVec4; 3],
+    /// U, V and W of the world steps from texel to texel.
+    pub(crate) across: [DVec3; 3],
+    /// Across the light.
+    pub(crate) light: &'a LightSpace,
+    /// Size of a texel where w is 1, world units.
+    pub(crate) texel: DVec2,
+}
+
+impl Fitter<'_> {
+    /// The texels of a map of that side around a body: with as much border as its blur reads.
+    pub(crate) fn texels_for(&self, body: &FocusBody, side: u32) -> Texels {
+        let Encoding::Moments(prefilter) = self.encoding else { return self.texels.of_side(side) };
+        let radius = match prefilter.radius {
+            Radius::Texels(radius) => f64::from(radius),
+            Radius::World(radius) => f64::from(radius) * f64::from(side) / self.extent(body).max(THINNEST),
+        };
+        let radius = radius.min(f64::from(ANTUMBRA_BLUR_MOST)) as f32;
+        self.texels.of_side(side).blurred(antumbra_blur_reach(radius, prefilter.bell).unsigned_abs())
+    }
+
+    /// About the shorter side of the window that will be laid around a body, world units. Of maps that stand still it
+    /// stands still too.
+    fn extent(&self, body: &FocusBody) -> f64 {
+        let snapped = 0.5 * snap::size(&self.input.camera.projection, body.depth);
+        if self.how.stabilise == Stabilise::SnapTexels && snapped.is_finite() {
+            return snapped;
+        }
+        let light = LightSpace::fixed(self.travel);
+        let places = || body.vertices.iter().map(|vertex| light.ray(*vertex).truncate());
+        let low = places().fold(DVec2::INFINITY, DVec2::min);
+        (places().fold(DVec2::NEG_INFINITY, DVec2::max) - low).min_element()
+    }
+
+    /// Writes what lookups need of the filter, and gives what its passes need.
+    pub(crate) fn blur(
+        &self,
+        prefilter: &Prefilter,
+        placed: &Placed,
+        texels: &Texels,
+        uniforms: &mut ViewUniforms,
+    ) -> BlurUniforms {
+        let Placed { rows, across, light, texel } = *placed;
+        // One over w: the last row of the inverse of what takes places across the light to (u w, v w, w).
+        let of = |row: DVec4| DVec3::new(row.truncate().dot(light.p()), row.truncate().dot(light.q()), row.w);
+        let place_from_texture = DMat3::from_cols(of(rows[0]), of(rows[1]), of(rows[2])).transpose().inverse();
+        let row = |row: DVec3| row.extend(0.0).as_vec4().to_array();
+        let [across_u, across_v, across_w] = across.map(row);
+        let radius = match prefilter.radius {
+            Radius::Texels(radius) => -radius,
+            Radius::World(radius) => radius,
+        };
+        // Lift receivers by what of the blur reaches nearer.
+        let widest = match prefilter.radius {
+            Radius::Texels(radius) => f64::from(radius),
+            Radius::World(radius) => f64::from(radius) / texel.min_element(),
+        };
+        uniforms.bias[0] += (prefilter.lifted() * widest.min(f64::from(texels.kernel()))) as f32;
+        self.write_level(prefilter, texel, uniforms);
+        let corner = self.tile.corner;
+        BlurUniforms {
+            tile: [corner.x, corner.y, self.tile.side, self.tile.of],
+            across_u,
+            across_v,
+            across_w,
+            inverse_w: row(place_from_texture.row(2)),
+            radius,
+            bell: prefilter.bell.into(),
+            first_term: 0,
+            padding: 0,
+        }
+    }
+
+    /// Which level of the mip chain is read: texels over a pixel, linear in position for perspective views.
+    fn write_level(&self, prefilter: &Prefilter, texel: DVec2, uniforms: &mut ViewUniforms) {
+        let camera = &self.input.camera;
+        let pixels = camera.pixels_per_unit() * texel.element_product().sqrt();
+        let pixel = if camera.projection.spreads() {
+            let forward = camera.forward();
+            forward.extend(forward.dot(self.input.origin - camera.eye()))
+        } else {
+            DVec4::W
+        };
+        let last = if prefilter.moments.mips { prefilter.moments.last_level(self.tile.of) } else { 0 };
+        if last > 0 {
+            uniforms.pixel_from_render = (pixel / pixels).as_vec4().to_array();
+        }
+        uniforms.moments = [prefilter.dark, last as f32, 0.0, 0.0];
+    }
+}
+
+/// Says what a format of moments loses.
+pub(crate) fn report(texel: Texel, frame: &mut ShadowFrame) {
+    let Texel::Moments(moments) = texel else { return };
+    let variance = moments.kind() == MomentKind::Variance;
+    if variance && moments.format() == MomentFormat::Float16 && moments.variance_loss() >= MUCH_LOST {
+        frame.leave_out(Part::Light, Why::FormatLoses { depth: f64::from(moments.variance_loss()).sqrt() });
+    }
+}
