@@ -39,7 +39,14 @@ pub struct WgslKey {
 
 impl Default for WgslKey {
     fn default() -> Self {
-        Self { texel: Texel::default(), filter: Pcf::default(), shape: MapShape::default(), maps: 1, select: Select::default(), blend: false }
+        Self {
+            texel: Texel::default(),
+            filter: Pcf::default(),
+            shape: MapShape::default(),
+            maps: 1,
+            select: Select::default(),
+            blend: false,
+        }
     }
 }
 

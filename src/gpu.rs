@@ -71,8 +71,8 @@ use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUnifo
 use crate::scene::MapBudget;
 use crate::texel::Texel;
 use clear::{TileClear, limit_to, tile_of};
-use prefilter::Prefilter;
 use layout::{CASTER_BYTES, bind_entries, caster_bind_group, map_dimension, most_views, uniform_bytes};
+use prefilter::Prefilter;
 
 /// Format of a depth map: the precision that the bias is computed for.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;

@@ -1,10 +1,10 @@
 //! The composite: stages in order.
 
+use crate::content::Tile;
 use crate::encoding::stage::Encoding;
 use crate::error::FitError;
 use crate::fit::bias::Bias;
 use crate::fit::blur;
-use crate::content::Tile;
 use crate::fit::layout::How;
 use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;

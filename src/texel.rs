@@ -181,9 +181,7 @@ impl Moments {
         let of_kind = |kind: MomentKind| kind.formats().iter().map(move |format| Self::new(kind, *format));
         MomentKind::ALL.into_iter().flat_map(of_kind).flat_map(|moments| {
             let linear = if moments.linear { &[true][..] } else { &[false, true] };
-            linear.iter().flat_map(move |linear| {
-                [false, true].map(|mips| Self { linear: *linear, mips, ..moments })
-            })
+            linear.iter().flat_map(move |linear| [false, true].map(|mips| Self { linear: *linear, mips, ..moments }))
         })
     }
 

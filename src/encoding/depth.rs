@@ -10,6 +10,7 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
+use super::read::antumbra_filtered;
 use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
 
 /// A depth map that can be compared with, as a comparison sampler does it.
@@ -18,6 +19,12 @@ pub trait CompareMap {
     fn size(&self) -> UVec2;
     /// Bilinear share of the four texels around `uv` whose depth is at least `depth`; coordinates clamp to the edge.
     fn sample_compare(&self, uv: Vec2, depth: f32) -> f32;
+    /// What is stored around `uv` at a level of the mip chain, interpolated; of a series, the `pair`th two terms. Maps of
+    /// depths store none.
+    fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
+        let _ = (uv, level, pair);
+        Vec4::ZERO
+    }
 }
 
 /// A depth map in memory: row 0 on top, depth 0 nearest to the light.
@@ -200,7 +207,7 @@ pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: V
 /// Twin of `antumbra_visible`: share of the light that reaches a point of render space.
 #[must_use]
 pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
-    antumbra_filter(key.filter, map, &antumbra_look(key, view, position, normal))
+    antumbra_filtered(key, view, map, &antumbra_look(key, view, position, normal), position)
 }
 
 /// Twin of `antumbra_look`: where a receiver is looked up in a view, its bias applied.

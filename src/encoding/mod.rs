@@ -6,6 +6,7 @@ pub mod depth;
 pub mod exponential;
 pub mod footprint;
 pub mod moments;
+pub mod read;
 pub mod split;
 pub(crate) mod stage;
 pub mod variance;

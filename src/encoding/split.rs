@@ -8,9 +8,10 @@
 //! - Engel, *Cascaded shadow maps*, `ShaderX5`, 2006 (by depth); Valient, *Stable rendering of cascaded shadow maps*,
 //!   `ShaderX6`, 2008 (by containment: the finest map that holds the point).
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 
-use super::depth::{CompareMap, Lookup, antumbra_filter, antumbra_look, antumbra_visible};
+use super::depth::{CompareMap, Lookup, antumbra_look, antumbra_visible};
+use super::read::antumbra_filtered;
 use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
 
 /// A map among others in its layer: lookups beyond it read the texels at its rim.
@@ -41,6 +42,10 @@ impl<M: CompareMap> CompareMap for OnMap<'_, M> {
 
     fn sample_compare(&self, uv: Vec2, depth: f32) -> f32 {
         self.layer.sample_compare(uv.max(self.low).min(self.high), depth)
+    }
+
+    fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
+        self.layer.stored(uv.max(self.low).min(self.high), level, pair)
     }
 }
 
@@ -112,7 +117,7 @@ fn finest<M: CompareMap>(
             continue;
         }
         let share = if key.blend { rest * (room * view.domain[3]).min(1.0) } else { rest };
-        lit += share * OnMap::of(view, layers).map_or(1.0, |map| antumbra_filter(key.filter, &map, &look));
+        lit += share * OnMap::of(view, layers).map_or(1.0, |map| antumbra_filtered(key, view, &map, &look, position));
         rest -= share;
         if rest <= 0.0 {
             break;

@@ -11,14 +11,16 @@ use std::time::Instant;
 use glam::{DVec3, UVec2, UVec4};
 use rayon::prelude::*;
 
+use super::moments::MomentMap;
 use super::projection::clip_from_render;
 use super::raster::{DepthMode, DepthTarget, Hit, RasterPass, rasterise, resolve};
 use super::scene::SceneModel;
 use super::subject::{Setting, Subject};
 use crate::camera::Camera;
-use crate::encoding::depth::DepthMap;
+use crate::encoding::depth::{CompareMap, DepthMap};
 use crate::encoding::split::antumbra_visibility;
 use crate::frame::{ShadowFrame, ShadowView};
+use crate::texel::{Moments, Texel};
 
 /// A shadow mask and what it took.
 #[derive(Clone, Debug)]
@@ -27,6 +29,8 @@ pub struct CpuImage {
     pub mask: Vec<u8>,
     /// Time to draw the maps, milliseconds.
     pub casters_ms: f64,
+    /// Time to filter them, milliseconds; 0 for maps of depths.
+    pub filter_ms: f64,
     /// Time to look every visible point up, milliseconds.
     pub receivers_ms: f64,
 }
@@ -64,7 +68,12 @@ impl Visible {
 #[must_use]
 pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, setting: &Setting) -> CpuImage {
     if frame.views.is_empty() {
-        return CpuImage { mask: vec![u8::MAX; visible.hits.len()], casters_ms: 0.0, receivers_ms: 0.0 };
+        return CpuImage {
+            mask: vec![u8::MAX; visible.hits.len()],
+            casters_ms: 0.0,
+            filter_ms: 0.0,
+            receivers_ms: 0.0,
+        };
     }
     // Rasterise from the light.
     let start = Instant::now();
@@ -73,20 +82,53 @@ pub fn render(subject: &Subject, visible: &Visible, frame: &ShadowFrame, setting
         draw(subject, frame, view, setting.origin, &mut layers);
     }
     let casters_ms = start.elapsed().as_secs_f64() * 1e3;
-    // Project each visible point into the map that serves it.
+    // Filter them, and project each visible point into the map that serves it.
     let start = Instant::now();
-    let size = UVec2::splat(frame.map.side);
-    let maps: Vec<_> = layers.iter().map(|depth| DepthMap { size, depth }).collect();
+    match frame.wgsl.texel {
+        Texel::Depth => {
+            let size = UVec2::splat(frame.map.side);
+            let maps: Vec<_> = layers.iter().map(|depth| DepthMap { size, depth }).collect();
+            let (mask, receivers_ms) = look_up(visible, frame, setting, &maps);
+            CpuImage { mask, casters_ms, filter_ms: 0.0, receivers_ms }
+        }
+        Texel::Moments(moments) => {
+            let maps = filtered(moments, frame, &layers);
+            let filter_ms = start.elapsed().as_secs_f64() * 1e3;
+            let (mask, receivers_ms) = look_up(visible, frame, setting, &maps);
+            CpuImage { mask, casters_ms, filter_ms, receivers_ms }
+        }
+    }
+}
+
+/// The layers of a frame as moments.
+fn filtered(moments: Moments, frame: &ShadowFrame, layers: &[Vec<f32>]) -> Vec<MomentMap> {
+    let mut maps: Vec<_> = layers.iter().map(|_| MomentMap::new(moments, frame.map.side)).collect();
+    for view in &frame.views {
+        let layer = view.layer as usize;
+        maps[layer].filter(&layers[layer], view);
+    }
+    maps.iter_mut().for_each(MomentMap::halve);
+    maps
+}
+
+/// The mask, and the time that it took, milliseconds.
+fn look_up<M: CompareMap + Sync>(
+    visible: &Visible,
+    frame: &ShadowFrame,
+    setting: &Setting,
+    maps: &[M],
+) -> (Vec<u8>, f64) {
+    let start = Instant::now();
     let lit = |hit: &Option<Hit>| match hit {
         Some(Hit { position, normal, .. }) => {
             let eye_depth = setting.camera.eye_depth(*position, setting.origin) as f32;
             let (position, normal) = (position.as_vec3(), normal.as_vec3());
-            antumbra_visibility(frame.wgsl, &frame.uniforms, &maps, position, normal, eye_depth)
+            antumbra_visibility(frame.wgsl, &frame.uniforms, maps, position, normal, eye_depth)
         }
         None => 1.0,
     };
     let mask = visible.hits.par_iter().map(|hit| (lit(hit) * 255.0).round() as u8).collect();
-    CpuImage { mask, casters_ms, receivers_ms: start.elapsed().as_secs_f64() * 1e3 }
+    (mask, start.elapsed().as_secs_f64() * 1e3)
 }
 
 /// One map of a frame: every object that may cast into it. Layers are made as they are wanted.

@@ -10,11 +10,11 @@ use super::metrics::{MaskError, Scores, mask_from_bytes};
 use super::report::Row;
 use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
+use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::error::FitError;
 use crate::fit::snap::Stabilise;
 use crate::frame::{Select, ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
-use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::remix::Remix;
 use crate::split::{Scheme, Split};
 use crate::technique::ShadowTechnique;
@@ -197,8 +197,8 @@ impl<'a> Studio<'a> {
             (_, Prepared::Cpu(visible)) => {
                 let image = cpu::render(self.subject, visible, &frame, &self.setting);
                 let bytes = DEPTH_BYTES * texels(&frame);
-                let (casters_ms, receivers_ms) = (image.casters_ms, image.receivers_ms);
-                Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms: 0.0, receivers_ms, bytes })
+                let (casters_ms, filter_ms, receivers_ms) = (image.casters_ms, image.filter_ms, image.receivers_ms);
+                Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms, receivers_ms, bytes })
             }
             (Backend::Cpu, Prepared::Gpu(_)) => Err(RunError::Render("the scene was prepared for a GPU".to_owned())),
         }

@@ -11,6 +11,7 @@ pub mod footprint;
 pub mod gltf;
 pub mod gpu;
 pub mod metrics;
+pub mod moments;
 pub mod oracle;
 pub mod projection;
 pub mod raster;
