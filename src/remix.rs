@@ -1,8 +1,8 @@
 //! The composite: stages in order.
 
+use crate::content::Tile;
 use crate::error::FitError;
 use crate::fit::bias::Bias;
-use crate::content::Tile;
 use crate::fit::layout::How;
 use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;

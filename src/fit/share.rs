@@ -181,8 +181,10 @@ impl Fitter<'_> {
             *dearest -= 1;
         }
         // What there was, as long as that is hardly worse.
-        let kept: Halvings = slices.iter().zip(&chosen).map(|(slice, now)| slice.before.unwrap_or(*now).min(most)).collect();
-        let total = |all: &Halvings| slices.iter().zip(all).map(|(slice, halvings)| error(slice, *halvings)).sum::<f64>();
+        let kept: Halvings =
+            slices.iter().zip(&chosen).map(|(slice, now)| slice.before.unwrap_or(*now).min(most)).collect();
+        let total =
+            |all: &Halvings| slices.iter().zip(all).map(|(slice, halvings)| error(slice, *halvings)).sum::<f64>();
         if area(&kept) <= room && total(&kept) <= (1.0 + HYSTERESIS) * total(&chosen) { kept } else { chosen }
     }
 

@@ -198,15 +198,7 @@ impl Fitter<'_> {
         let reach = vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
         let texel = drawn.size() / f64::from(self.tile.side - 2 * self.texels.ring);
         let depth_range = depth.far - depth.near;
-        BiasInput {
-            window: drawn,
-            texel,
-            depth_range,
-            clip_from_render,
-            texture_from_render,
-            reach,
-            tile: self.tile,
-        }
+        BiasInput { window: drawn, texel, depth_range, clip_from_render, texture_from_render, reach, tile: self.tile }
     }
 
     /// Corner and side of the tile, and the width of its ring, texture coordinates.
