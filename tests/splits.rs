@@ -40,7 +40,7 @@ fn worlds() -> impl Strategy<Value = Inputs> {
     });
     (prop_oneof![inputs(), around], 1..=8_u32, 0..3_u32).prop_map(|(inputs, layers, odd)| {
         let side = if odd == 0 { inputs.side.max(2) - 1 } else { inputs.side };
-        Inputs { layers, side, ..inputs }
+        Inputs { side, layers, ..inputs }
     })
 }
 
