@@ -77,25 +77,36 @@ fn splits() -> Vec<(String, Remix)> {
     plain.into_iter().chain(ours.map(|(name, remix)| (name.to_owned(), remix))).collect()
 }
 
-/// Ways to share texels, by name and number of layers; the first one is the yardstick. `MAPS` layers are one budget.
+/// Ways to share texels, by name and number of layers; the first one is the yardstick.
 fn shares() -> Vec<(String, u32, Remix)> {
-    let cascades = |maps, share| {
+    let maps_of = |maps, share| {
         let splits = DepthSplits { maps, ..DepthSplits::DEFAULT };
         Remix { split: Split::Depth(splits), share, ..techniques::cascades() }
     };
-    let layers = u32::from(MAPS);
+    let published = |share| {
+        let scheme = Scheme::Practical { lambda: LAMBDAS[0], offset: 0.0 };
+        let splits = DepthSplits { maps: MAPS, scheme, select: Select::Depth, enough: 0.0, ..DepthSplits::DEFAULT };
+        Remix { split: Split::Depth(splits), share, ..techniques::pssm() }
+    };
+    let (layers, most) = (u32::from(MAPS), MAX_VIEWS as u8);
+    let named = |name: &str, layers: u32, remix: Remix| (name.to_owned(), layers, remix);
     let mut shares = vec![
-        (page::EQUAL.to_owned(), layers, cascades(MAPS, Share::Equal)),
-        (format!("{MAPS} maps, equal error"), layers, cascades(MAPS, Share::EqualError)),
+        named(page::EQUAL, layers, maps_of(MAPS, Share::Equal)),
+        named("4 maps, equal error", layers, maps_of(MAPS, Share::EqualError)),
+        named("4 maps, equal, λ 0.5, by depth", layers, published(Share::Equal)),
+        named("4 maps, equal error, λ 0.5, by depth", layers, published(Share::EqualError)),
     ];
-    for maps in MAPS + 1..=MAX_VIEWS as u8 {
-        shares.push((format!("{maps} maps, least error"), layers, cascades(maps, Share::LeastError)));
+    for maps in MAPS + 1..=most {
+        shares.push((format!("{maps} maps, least error"), layers, maps_of(maps, Share::LeastError)));
     }
-    for maps in [MAPS, MAX_VIEWS as u8] {
-        shares.push((format!("{maps} maps, least error, in 2 layers"), 2, cascades(maps, Share::LeastError)));
+    for (layers, fewer) in [(2, "2 maps, equal, in 2 layers"), (1, "1 map, in 1 layer")] {
+        shares.push(named(fewer, layers, maps_of(layers as u8, Share::Equal)));
+        for maps in [MAPS, most] {
+            let name = format!("{maps} maps, least error, in {layers} layer{}", if layers > 1 { "s" } else { "" });
+            shares.push((name, layers, maps_of(maps, Share::LeastError)));
+        }
     }
-    shares.push(("2 maps, equal, in 2 layers".to_owned(), 2, cascades(2, Share::Equal)));
-    shares.push(("8 maps, equal, in 8 layers".to_owned(), 8, cascades(8, Share::Equal)));
+    shares.push(named("8 maps, equal, in 8 layers", 8, maps_of(most, Share::Equal)));
     shares
 }
 
