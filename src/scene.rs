@@ -149,7 +149,7 @@ impl Scene<'_> {
 pub struct MapBudget {
     /// Side of one map, texels, 1 to 16384.
     pub side: u32,
-    /// Array layers, 1 to 256.
+    /// Array layers, 1 to 256: one for each map, unless maps share them ([`Share`](crate::Share)).
     pub layers: u32,
     /// Views at most, 1 to [`MAX_VIEWS`](crate::MAX_VIEWS).
     pub views: u32,

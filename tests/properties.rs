@@ -147,6 +147,7 @@ fn light_directions_are_normalised_or_refused() {
         visible: None,
         points: Vec::new(),
         side: 1024,
+        layers: 8,
         origin: DVec3::ZERO,
     };
     let fit = |scale: f64| {

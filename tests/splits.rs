@@ -6,11 +6,12 @@ mod common;
 use antumbra::encoding::depth::antumbra_look;
 use antumbra::encoding::split::{antumbra_index, antumbra_room};
 use antumbra::{
-    Aabb, DepthSplits, Part, Remix, Scheme, Select, ShadowFrame, ShadowTechnique, Split, Stabilise, Warp, WgslKey,
+    Aabb, DepthSplits, Encoding, Part, Pcf, Remix, Scheme, Select, ShadowFrame, ShadowTechnique, Share, Split,
+    Stabilise, Warp, WgslKey,
 };
 use common::tally::Tally;
 use common::{Inputs, caster, in_view, inputs, receiver, shares, sound};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -29,14 +30,18 @@ fn scheme() -> impl Strategy<Value = Scheme> {
     ]
 }
 
-/// Hostile inputs; in every second case all around the camera, so that there is much to split.
+/// Hostile inputs, with few layers or enough, of odd sides as well; in every second case all around the camera, so that
+/// there is much to split.
 fn worlds() -> impl Strategy<Value = Inputs> {
     let around = (inputs(), -1.0..5.0_f64).prop_map(|(inputs, log)| {
         let (eye, half) = (inputs.camera.world_from_view.w_axis.truncate(), 10.0_f64.powf(log));
         let bounds = Aabb::new(eye - half, eye + half);
         Inputs { casters: bounds, receivers: bounds, objects: Vec::new(), ..inputs }
     });
-    prop_oneof![inputs(), around]
+    (prop_oneof![inputs(), around], 1..=8_u32, 0..3_u32).prop_map(|(inputs, layers, odd)| {
+        let side = if odd == 0 { inputs.side.max(2) - 1 } else { inputs.side };
+        Inputs { side, layers, ..inputs }
+    })
 }
 
 fn remixes() -> impl Strategy<Value = Remix> {
@@ -56,9 +61,13 @@ fn remixes() -> impl Strategy<Value = Remix> {
             DepthSplits { maps, scheme, select, blend, fade, enough }
         },
     );
-    (warp, splits, any::<bool>()).prop_map(|(warp, splits, snap)| Remix {
+    let share = prop::sample::select(vec![Share::Equal, Share::EqualError, Share::LeastError]);
+    let filter = prop::sample::select(Pcf::ALL.to_vec());
+    (warp, splits, any::<bool>(), share, filter).prop_map(|(warp, splits, snap, share, filter)| Remix {
         split: Split::Depth(splits),
         warp,
+        share,
+        encoding: Encoding::Depth(filter),
         stabilise: if snap { Stabilise::SnapTexels } else { Stabilise::Off },
         ..Remix::default()
     })
@@ -136,15 +145,49 @@ fn serves(
     Ok(())
 }
 
-/// Cases, those with a shadowed receiver in view, and those of them with several views.
-static CASES: Tally<3> = Tally::new();
+/// Maps lie inside their layers and not in each other, and have sides that are the layer's over powers of two.
+fn tiles_are_apart(frame: &ShadowFrame, remix: &Remix, layers: u32) -> Result<(), TestCaseError> {
+    let side = frame.map.side;
+    let mut tiles: Vec<(u32, UVec2, u32)> = Vec::new();
+    for (index, view) in frame.views.iter().enumerate() {
+        let at = view.viewport;
+        prop_assert_eq!(at.z, at.w);
+        // One texel around it stays clear; the smallest maps have none.
+        let ring = u32::from(side > 2);
+        prop_assert!(at.x >= ring && at.y >= ring && view.layer < layers, "{at} of layer {}", view.layer);
+        let (corner, length) = (UVec2::new(at.x, at.y) - ring, at.z + 2 * ring);
+        prop_assert!((corner + length).max_element() <= side, "{corner} {length} of {side}");
+        let halvings = (0..4).find(|halvings| side >> halvings == length);
+        prop_assert!(halvings.is_some(), "{length} of {side}");
+        let halved = frame.left_out.iter().any(|cut| cut.part == Part::Texels(index as u8));
+        prop_assert_eq!(halved, halvings != Some(0));
+        let short = frame.left_out.iter().any(|cut| cut.part == Part::Border(index as u8));
+        prop_assert!(!(short && halved), "too small for its filter, and halved");
+        prop_assert!(remix.share != Share::Equal || (!halved && view.layer == index as u32));
+        prop_assert_eq!(frame.uniforms.views[index].across_u[3], view.layer as f32);
+        for (layer, other, far) in &tiles {
+            let apart = (corner + length).cmple(*other).any() || (*other + *far).cmple(corner).any();
+            prop_assert!(*layer != view.layer || apart, "{corner} {length} and {other} {far} of layer {layer}");
+        }
+        tiles.push((view.layer, corner, length));
+    }
+    let area: u64 = tiles.iter().map(|(.., length)| u64::from(*length).pow(2)).sum();
+    prop_assert!(area <= u64::from(layers) * u64::from(side).pow(2));
+    Ok(())
+}
+
+/// Cases, those with a shadowed receiver in view, those of them with several views, and with views that share layers.
+static CASES: Tally<4> = Tally::new();
 
 #[test]
 fn nothing_is_lost_between_splits() {
     nothing_is_lost_over_hostile_inputs();
-    let [cases, reached, several] = CASES.read();
-    println!("{cases} cases, {reached} with a shadowed receiver in view, {several} of them with several views");
-    assert!(cases >= 100_000 && reached >= cases / 8 && several >= cases / 16);
+    let [cases, reached, several, packed] = CASES.read();
+    println!(
+        "{cases} cases, {reached} with a shadowed receiver in view, {several} of them with several views, {packed} with \
+         several in a layer"
+    );
+    assert!(cases >= 100_000 && reached >= cases / 8 && several >= cases / 16 && packed >= cases / 200);
 }
 
 proptest! {
@@ -153,6 +196,7 @@ proptest! {
     fn nothing_is_lost_over_hostile_inputs(inputs in worlds(), remix in remixes(), shares in shares(), along in 0.0..=1.0_f64) {
         CASES.count(0);
         let frame = sound(remix, &inputs)?;
+        tiles_are_apart(&frame, &remix, inputs.layers)?;
         // Slices ascend, and leave no gap that is not accounted for.
         let domains = frame.uniforms.views[..frame.views.len()].iter().map(|view| view.domain);
         let planes: Vec<f32> = domains.flat_map(|domain| [domain[0], domain[1]]).collect();
@@ -168,6 +212,9 @@ proptest! {
         CASES.count(1);
         if frame.views.len() > 1 {
             CASES.count(2);
+        }
+        if frame.views.iter().enumerate().any(|(index, view)| frame.views[..index].iter().any(|b| b.layer == view.layer)) {
+            CASES.count(3);
         }
         serves(&frame, &remix, &inputs, receiver, caster)?;
     }

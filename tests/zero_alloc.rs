@@ -4,7 +4,7 @@ use std::alloc::System;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use antumbra::{
-    Aabb, Camera, FitInput, Light, MapBudget, Object, Remix, Scene, ShadowTechnique, Stabilise, techniques,
+    Aabb, Camera, FitInput, Light, MapBudget, Object, Remix, Scene, ShadowTechnique, Share, Stabilise, techniques,
 };
 use glam::{DMat4, DVec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -37,15 +37,22 @@ fn fit_allocates_nothing() {
     let mut fits = 0;
     for (_, technique) in techniques::NAMED {
         // Still maps have no warp to guard.
-        for (stabilise, guard) in [(Stabilise::Off, true), (Stabilise::Off, false), (Stabilise::SnapTexels, true)] {
+        for (stabilise, guard, share) in [
+            (Stabilise::Off, true, Share::Equal),
+            (Stabilise::Off, false, Share::EqualError),
+            (Stabilise::SnapTexels, true, Share::Equal),
+            (Stabilise::SnapTexels, true, Share::LeastError),
+        ] {
             for (scene, visible_points) in scenes.into_iter().flat_map(|scene| [(scene, &[][..]), (scene, &seen)]) {
                 for travel in travels {
-                    let remix = Remix { stabilise, guard, ..technique() };
+                    let remix = Remix { stabilise, guard, share, ..technique() };
                     let scene = Scene { visible_points, ..scene };
                     let light = Light::Directional { travel };
-                    let map = MapBudget { side: 1024, layers: 8, views: 8 };
+                    let map = MapBudget { side: 1024, layers: 2, views: 8 };
                     let input = FitInput { camera, light, scene, map, origin: DVec3::ZERO, previous: None };
-                    let views = remix.fit(&input).map_or(9, |frame| frame.views.len());
+                    let first = remix.fit(&input);
+                    let again = remix.fit(&FitInput { previous: first.as_ref().ok(), ..input });
+                    let views = again.map_or(9, |frame| frame.views.len());
                     KEPT.fetch_add(views, Ordering::Relaxed);
                     fits += 1;
                 }

@@ -23,6 +23,17 @@ const HALF_A_PIXEL: f64 = 1e-6;
 /// Columns of the table of cases.
 const SHOWN: [&str; 5] = [YARDSTICK, "λ 0.8, by depth", "cascades", "cascades (points)", "cascades (depths)"];
 
+/// The yardstick of shares.
+pub(crate) const EQUAL: &str = "4 maps, equal";
+
+const SHARES: &str = "
+## Shares of the texels
+
+*Cascades* with other `share`s, and other numbers of maps, in 4 layers of `size`² texels unless they say otherwise. *÷ equal*: wrong pixels
+over those of `Share::Equal` with 4 maps and the same knowledge, geometric mean; *÷ texels*: texels that are drawn, over that one's, mean;
+*layers*: in use, mean.
+";
+
 const HEAD: &str = "# What splits buy
 
 This page is written by the command below; every number on it comes from that run.
@@ -36,7 +47,7 @@ distance; *points*: a few hundred visible positions as well; *depths*: those and
 looked up in the first map that holds them. *Cascades*: equal error, finest, least-error warp.
 ";
 
-pub(crate) fn page(meta: &[(&str, String)], records: &[Record]) -> String {
+pub(crate) fn page(meta: &[(&str, String)], records: &[Record], shared: &[Record]) -> String {
     let mut text = HEAD.to_owned();
     text.push('\n');
     for (name, value) in meta {
@@ -45,6 +56,10 @@ pub(crate) fn page(meta: &[(&str, String)], records: &[Record]) -> String {
     text.push_str(TABLE);
     for (set, name) in [("shared", "case files"), ("built-in", "built-in scenes")] {
         techniques(&mut text, name, &records.iter().filter(|record| record.set == set).collect::<Vec<_>>());
+    }
+    text.push_str(SHARES);
+    for (set, name) in [("shared", "case files"), ("built-in", "built-in scenes")] {
+        shares(&mut text, name, &shared.iter().filter(|record| record.set == set).collect::<Vec<_>>());
     }
     cases(&mut text, records);
     text
@@ -92,6 +107,47 @@ fn techniques(text: &mut String, name: &str, records: &[&Record]) {
             geometric_mean(&ratios),
             worst.case,
             worst.size
+        );
+    }
+}
+
+/// A table of shares over the pictures of a set.
+fn shares(text: &mut String, name: &str, records: &[&Record]) {
+    let _ = writeln!(
+        text,
+        "\n| {name} | ÷ equal | worst | where | above 1.10 | ÷ texels | layers | maps |\n|---|--:|--:|---|--:|--:|--:|--:|"
+    );
+    let mut names: Vec<&str> = Vec::new();
+    for record in records {
+        if !names.contains(&record.technique.as_str()) {
+            names.push(&record.technique);
+        }
+    }
+    for technique in names {
+        let suffix = if technique.ends_with(KNOWN[1].0) { KNOWN[1].0 } else { KNOWN[0].0 };
+        let yardstick = format!("{EQUAL}{suffix}");
+        let pairs: Vec<(&Record, &Record)> = records
+            .iter()
+            .filter(|record| record.technique == technique)
+            .filter_map(|record| Some((*record, of(records, record, &yardstick)?)))
+            .filter(|(_, equal)| equal.wrong >= LEAST_WRONG)
+            .collect();
+        let ratio = |(record, equal): &(&Record, &Record)| record.wrong.max(HALF_A_PIXEL) / equal.wrong;
+        let Some(worst) = pairs.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b))) else { continue };
+        let mean =
+            |figure: &dyn Fn(&(&Record, &Record)) -> f64| pairs.iter().map(figure).sum::<f64>() / pairs.len() as f64;
+        let ratios: Vec<f64> = pairs.iter().map(ratio).collect();
+        let _ = writeln!(
+            text,
+            "| {technique} | {:.3} | {:.2} | {} {} | {} | {:.2} | {:.1} | {:.1} |",
+            geometric_mean(&ratios),
+            ratio(worst),
+            worst.0.case,
+            worst.0.size,
+            ratios.iter().filter(|ratio| **ratio > 1.1).count(),
+            mean(&|(record, equal)| record.texels as f64 / equal.texels.max(1) as f64),
+            mean(&|(record, _)| f64::from(record.layers)),
+            mean(&|(record, _)| record.views as f64),
         );
     }
 }

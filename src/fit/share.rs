@@ -91,7 +91,7 @@ impl Fitter<'_> {
         if self.how.share == Share::LeastError { layers << (2 * self.most_halvings()) } else { layers }
     }
 
-    /// The tile of each slice; none where each has a layer of its own. O(slices · samples).
+    /// The tile of each slice; none where each has a layer of its own. O(slices · edges + samples).
     pub(crate) fn tiles(&self, cuts: &Cuts, range: DepthRange) -> ArrayVec<Tile, MAX_VIEWS> {
         let slices = || self.predicted(cuts, range);
         match self.how.share {
@@ -122,18 +122,21 @@ impl Fitter<'_> {
             let of_body = cuts.profile.size(near, far);
             let snapped = snap::size(&camera.projection, DepthRange { near, far });
             let size = if still && snapped.is_finite() { snapped } else { of_body };
-            // Where in its depths things are: in their middle as long as nobody knows better.
-            let (mut sum, mut count) = (ENOUGH_SAMPLES * 0.5 * (near + far), ENOUGH_SAMPLES);
-            for depth in samples.iter().map(|sample| camera.eye_depth(*sample, DVec3::ZERO)) {
-                if (near..=far).contains(&depth) {
-                    (sum, count) = (sum + depth, count + 1.0);
-                }
-            }
             let before = self.input.previous.and_then(|frame| frame.views.iter().find(|view| view.split == split));
             let before = before.map(|view| view.place.tile.halvings());
-            Slice { size, seen: cost.seen(near, far), distance: sum / count, before }
+            Slice { size, seen: cost.seen(near, far), distance: 0.5 * (near + far), before }
         };
-        cuts.slices.iter().map(slice).collect()
+        let mut slices: ArrayVec<Slice, MAX_VIEWS> = cuts.slices.iter().map(slice).collect();
+        // Where in its depths things are: in their middle as long as nobody knows better.
+        let mut count = [ENOUGH_SAMPLES; MAX_VIEWS];
+        for depth in samples.iter().map(|sample| camera.eye_depth(*sample, DVec3::ZERO)) {
+            let holds = |Cut { depth: DepthRange { near, far }, .. }: &Cut| (*near..=*far).contains(&depth);
+            if let Some(number) = cuts.slices.iter().position(holds) {
+                count[number] += 1.0;
+                slices[number].distance += (depth - slices[number].distance) / count[number];
+            }
+        }
+        slices
     }
 
     /// Each map by (2) as small as the worst one allows.

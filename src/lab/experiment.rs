@@ -12,12 +12,14 @@ use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
 use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::error::FitError;
+use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;
 use crate::frame::{Select, ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use crate::remix::Remix;
+use crate::scene::MapBudget;
 use crate::split::{Scheme, Split};
-use crate::technique::ShadowTechnique;
+use crate::technique::{FitInput, ShadowTechnique};
 use crate::warp::Warp;
 
 /// Which renderer is asked for.
@@ -107,6 +109,8 @@ pub struct Studio<'a> {
     setting: Setting,
     scene: Prepared,
     seen: Vec<glam::DVec3>,
+    /// Layers of every budget; as many as a technique has maps where none are named.
+    layers: Option<u32>,
 }
 
 /// The scene as the backend wants it.
@@ -158,7 +162,7 @@ impl<'a> Studio<'a> {
             Backend::Cpu => Prepared::Cpu(cpu::Visible::draw(&subject.model, &setting.camera, setting.origin)),
         };
         let seen = setting.visible_points(subject);
-        Ok(Self { backend, subject, setting, scene, seen })
+        Ok(Self { backend, subject, setting, scene, seen, layers: None })
     }
 
     /// The same, in which techniques are told more or less of what is seen than by default.
@@ -172,12 +176,20 @@ impl<'a> Studio<'a> {
         self
     }
 
+    /// The same, in which budgets have this many layers, however many maps a technique has.
+    #[must_use]
+    pub fn with_layers(self, layers: u32) -> Self {
+        Self { layers: Some(layers), ..self }
+    }
+
     /// Fits a technique, draws it, and times every step; `repetitions` of each pass, medians.
     ///
     /// # Errors
     /// The technique refused its input, or the renderer failed.
     pub fn shoot(&mut self, technique: &dyn ShadowTechnique, side: u32, repetitions: u32) -> Result<Shot, RunError> {
         let input = self.setting.input(self.subject, &self.seen, technique.wgsl_key(), side);
+        let map = MapBudget { layers: self.layers.unwrap_or(input.map.layers), ..input.map };
+        let input = FitInput { map, ..input };
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let fit_ns = median_fit_ns(|| technique.fit(&input).is_ok());
         match (&mut *self.backend, &self.scene) {
@@ -217,6 +229,8 @@ impl Studio<'_> {
         repetitions: u32,
     ) -> Result<Option<Race>, RunError> {
         let input = self.setting.input(self.subject, &self.seen, technique.wgsl_key(), side);
+        let map = MapBudget { layers: self.layers.unwrap_or(input.map.layers), ..input.map };
+        let input = FitInput { map, ..input };
         let frame = technique.fit(&input).map_err(RunError::Fit)?;
         let (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) = (&mut *self.backend, &self.scene) else {
             return Ok(None);
@@ -231,6 +245,12 @@ impl Studio<'_> {
 }
 
 impl Shot {
+    /// Texels of the maps that are drawn: those of views, whatever layers they are in.
+    #[must_use]
+    pub fn texels(&self) -> u64 {
+        texels(&self.frame)
+    }
+
     /// Compares the picture with the truth.
     ///
     /// # Errors
@@ -242,7 +262,7 @@ impl Shot {
     /// Writes times, sizes and errors into a row whose names are already there.
     pub fn fill(&self, row: &mut Row, scores: &Scores) {
         row.views = u32::try_from(self.frame.views.len()).unwrap_or(u32::MAX);
-        row.texels = texels(&self.frame);
+        row.texels = self.texels();
         row.bytes = self.bytes;
         row.fit_ns = self.fit_ns;
         row.casters_ms = self.casters_ms;
@@ -308,7 +328,12 @@ fn split_name(remix: &Remix) -> String {
     };
     let select = if splits.select == Select::Finest { ", finest" } else { "" };
     let blend = if splits.blend > 0.0 { ", blended" } else { "" };
-    format!("{} maps, {scheme}{select}{blend}", splits.maps)
+    let share = match remix.share {
+        Share::Equal => "",
+        Share::EqualError => ", texels by equal error",
+        Share::LeastError => ", texels by least error",
+    };
+    format!("{} maps, {scheme}{select}{blend}{share}", splits.maps)
 }
 
 /// Texels of a frame's views.

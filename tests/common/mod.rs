@@ -57,6 +57,7 @@ pub struct Inputs {
     pub visible: Option<DepthRange>,
     pub points: Vec<DVec3>,
     pub side: u32,
+    pub layers: u32,
     pub origin: DVec3,
 }
 
@@ -72,7 +73,7 @@ impl Inputs {
                 visible_depth: self.visible,
                 visible_points: &self.points,
             },
-            map: MapBudget { side: self.side, layers: 8, views: 8 },
+            map: MapBudget { side: self.side, layers: self.layers, views: 8 },
             origin: self.origin,
             previous: None,
         }
@@ -238,6 +239,7 @@ pub fn inputs() -> impl Strategy<Value = Inputs> {
                         visible: stage.visible,
                         points: stage.points,
                         side: stage.side,
+                        layers: 8,
                         origin,
                     }
                 })

@@ -4,6 +4,7 @@ mod many;
 mod probe;
 #[path = "../support/mod.rs"]
 mod support;
+mod tiles;
 
 use antumbra::gpu::{GpuError, ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::gpu::{Clock, Gpu, GpuFailure, GpuScene, RenderOptions, Renderer, read_depth};

@@ -1,8 +1,8 @@
 //! Each outcome of the shader against its twin's.
 
 use antumbra::encoding::depth::{
-    DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter, antumbra_tap,
-    antumbra_visible,
+    CompareMap, DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter,
+    antumbra_tap, antumbra_visible,
 };
 use antumbra::{Pcf, ViewUniforms, WgslKey};
 use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
@@ -78,12 +78,12 @@ impl Doubt {
     }
 
     /// A place that is in doubt by texels has more values than those around it.
-    pub(crate) fn is_wide(&self, map: &DepthMap) -> bool {
-        self.uv[0].max(self.uv[1]) > 0.25 / f64::from(map.size.x)
+    pub(crate) fn is_wide(&self, map: &impl CompareMap) -> bool {
+        self.uv[0].max(self.uv[1]) > 0.25 / f64::from(map.size().x)
     }
 
     /// Least and largest value that a filter may have.
-    pub(crate) fn band(&self, filter: Pcf, map: &DepthMap) -> (f32, f32) {
+    pub(crate) fn band(&self, filter: Pcf, map: &impl CompareMap) -> (f32, f32) {
         band(&self.look, self.uv, self.depth, |look| antumbra_filter(filter, map, look))
     }
 }

@@ -1,7 +1,7 @@
 //! Several maps: which of them a receiver reads, and how neighbours are blended.
 
 use antumbra::encoding::depth::DepthMap;
-use antumbra::encoding::split::{antumbra_index, antumbra_room, antumbra_visibility};
+use antumbra::encoding::split::{OnMap, antumbra_index, antumbra_room, antumbra_visibility};
 use antumbra::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::gpu::{Gpu, read_depth};
 use antumbra::wgsl::{self, Bindings};
@@ -72,8 +72,8 @@ fn compare(gpu: &Gpu, key: WgslKey, views: usize) -> Tally {
     let depths: Vec<Vec<f32>> = (0..views).map(|_| (0..SIDE * SIDE).map(|_| noise(&mut dice)).collect()).collect();
     let maps = ShadowMaps::new(gpu.device(), &ShadowMapsDescriptor { label: None, key, map: frame.map }).unwrap();
     maps.prepare(gpu.queue(), &frame).unwrap();
-    for (view, depth) in frame.views.iter().zip(&depths) {
-        adapter::fill(gpu, &maps, view, depth);
+    for view in &frame.views {
+        adapter::fill(gpu, &maps, view, &depths[view.layer as usize]);
     }
     for (layer, depth) in depths.iter().enumerate() {
         assert_eq!(&read_depth(gpu, &maps, layer as u32).unwrap(), depth, "layer {layer} is its own");
@@ -108,16 +108,24 @@ fn several(dice: &mut Dice, key: WgslKey, views: usize) -> ShadowFrame {
     for index in 0..views {
         let fitted = frame(dice, one, SIDE, index);
         let mut view = first.clone();
-        view.layer = index as u32;
+        // Layers are not in the order of views.
+        view.layer = (views - 1 - index) as u32;
         whole.views.push(view);
         whole.uniforms.views[index] = placed(dice, key, &fitted.uniforms.views[0], index);
-        whole.uniforms.views[index].across_u[3] = index as f32;
+        whole.uniforms.views[index].across_u[3] = (views - 1 - index) as f32;
     }
+    // The end of all maps, within the depths of cases.
+    let first = &mut whole.uniforms.views[0];
+    (first.across_v[3], first.across_w[3]) = (0.6 * FARTHEST, 4.0 / FARTHEST);
     whole
 }
 
 fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> ViewUniforms {
     let mut view = *view;
+    // A part of the layer, beyond which its rim is read.
+    let half = [0.12, 0.22, 0.31, 0.44][index.min(3)];
+    let [u, v] = [dice.single(0.47, 0.53), dice.single(0.47, 0.53)];
+    view.rect = [u - half, v - half, u + half, v + half];
     match key.select {
         Select::Depth => {
             let (near, far) = (3.0 * index as f32, 3.0 * (index + 1) as f32);
@@ -125,9 +133,6 @@ fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> V
             view.domain = [near, far, far - band, if key.blend { 1.0 / band } else { 0.0 }];
         }
         Select::Finest => {
-            let half = [0.12, 0.22, 0.31, 0.44][index.min(3)];
-            let [u, v] = [dice.single(0.47, 0.53), dice.single(0.47, 0.53)];
-            view.rect = [u - half, v - half, u + half, v + half];
             view.domain[2] = dice.single(0.0, 1.0) * view.bias[3];
             view.domain[3] = 1.0 / dice.single(0.05, 0.2);
         }
@@ -158,10 +163,12 @@ fn check(frame: &ShadowFrame, maps: &[DepthMap], case: &Case, shader: f32, tally
     };
     let (key, (position, normal)) = (frame.wgsl, (case.position.truncate(), case.normal.truncate()));
     let is_doubtful = |&index: &usize| {
-        let Some(map) = maps.get(index) else { return false };
+        let Some(map) = OnMap::of(&frame.uniforms.views[index], maps).filter(|_| index < maps.len()) else {
+            return false;
+        };
         let Some(doubt) = Doubt::of(key, &frame.uniforms.views[index], position, normal) else { return true };
-        let (low, high) = doubt.band(key.filter, map);
-        doubt.is_wide(map) || high - low > WEIGHT_TOLERANCE
+        let (low, high) = doubt.band(key.filter, &map);
+        doubt.is_wide(&map) || high - low > WEIGHT_TOLERANCE
     };
     if read.iter().any(is_doubtful) {
         tally.doubtful += 1;

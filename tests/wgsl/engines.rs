@@ -56,7 +56,7 @@ fn composes_unchanged_under_naga_oil() {
             })
             .unwrap_or_else(|error| panic!("{key:?}: {error}"));
         let [texture, view] =
-            if key.maps > 1 { ["texture_depth_2d_array", "views[1], 1u"] } else { ["texture_depth_2d", "view"] };
+            if key.maps > 1 { ["texture_depth_2d_array", "views[1]"] } else { ["texture_depth_2d", "view"] };
         let source = "
             #import antumbra::{AntumbraUniforms, antumbra_visible}
             @group(2) @binding(0) var<uniform> uniforms: AntumbraUniforms;
