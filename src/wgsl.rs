@@ -52,7 +52,7 @@ pub struct Bindings {
 pub const BINDING_COUNT: u32 = 3;
 
 /// Most fragments of a key.
-const MAX_FRAGMENTS: usize = 18;
+const MAX_FRAGMENTS: usize = 20;
 
 /// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
 ///
@@ -65,8 +65,9 @@ pub fn library(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
     fragments(key).into_iter().map(named).collect()
 }
 
-/// The type of the map.
-fn texture(key: WgslKey) -> &'static str {
+/// The type of the map, as functions take it.
+#[must_use]
+pub fn texture(key: WgslKey) -> &'static str {
     match (key.texel, is_arrayed(key)) {
         (Texel::Depth, false) => "texture_depth_2d",
         (Texel::Depth, true) => "texture_depth_2d_array",
@@ -80,8 +81,9 @@ pub(crate) fn is_arrayed(key: WgslKey) -> bool {
     key.maps > 1 || matches!(key.texel, Texel::Moments(moments) if moments.layers() > 1)
 }
 
-/// The type of its sampler.
-const fn sampler(key: WgslKey) -> &'static str {
+/// The type of its sampler, as functions take it.
+#[must_use]
+pub const fn sampler(key: WgslKey) -> &'static str {
     match key.texel {
         Texel::Depth => "sampler_comparison",
         Texel::Moments(_) => "sampler",

@@ -1,4 +1,8 @@
 //! Maps of moments, stored and read: the Rust twins of `shaders/store_*.wgsl`, `read_*.wgsl` and `level_*.wgsl`.
+//!
+//! # References
+//! - Williams, *Pyramidal parametrics*, 1983 (levels of a mip chain).
+//! - `MATH.md` section 7; the papers of each kind of moments stand in its own file.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 

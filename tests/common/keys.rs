@@ -1,21 +1,57 @@
 //! Keys for checks that are too slow for all of them.
+#![allow(dead_code, reason = "each test file uses a part of it")]
 
-use antumbra::{MapShape, Pcf, Select, WgslKey};
+use antumbra::{MapShape, MomentFormat, MomentKind, Moments, Pcf, Select, Texel, WgslKey};
 
 /// Fewest, usual and most maps of several.
 const COUNTS: [u8; 3] = [2, 4, 8];
 
-/// Every key of one map; of several, every way to find the map among few, some and most of them in every shape, with
-/// the default filter: of how it filters, the text that selects knows nothing but the reach.
-pub(crate) fn chosen() -> impl Iterator<Item = WgslKey> {
-    let is_one_of_several = |key: &WgslKey| COUNTS.contains(&key.maps) && key.filter == Pcf::Hardware2x2;
-    WgslKey::all().filter(move |key| key.maps == 1 || is_one_of_several(key))
+/// Every way to find the map.
+const WAYS: usize = Select::ALL.len() * 2;
+
+/// Maps of moments that differ in all that other fragments see of them: sampled, loaded, and in layers.
+fn different() -> [Texel; 3] {
+    [
+        Moments::new(MomentKind::Variance, MomentFormat::Unorm16).read(true, true),
+        Moments::new(MomentKind::Hausdorff, MomentFormat::Float32).read(false, true),
+        Moments::new(MomentKind::Convolution, MomentFormat::Unorm8),
+    ]
+    .map(Texel::Moments)
 }
 
-/// The choice can fail: it has all that it promises.
+fn is_usual(key: &WgslKey) -> bool {
+    key.texel == Texel::Depth || different().contains(&key.texel)
+}
+
+/// Every key of maps of depths; of moments, every one of a single map, every one of four affine maps that are found by
+/// containment, and in some, every other choice.
+pub(crate) fn covering() -> impl Iterator<Item = WgslKey> {
+    WgslKey::all().filter(|key| {
+        let four = key.maps == 4 && key.select == Select::Finest && !key.blend && key.shape == MapShape::Affine;
+        key.texel == Texel::Depth || key.maps == 1 || four || (is_usual(key) && COUNTS.contains(&key.maps))
+    })
+}
+
+/// Every key of one map of depths, and of one affine map of moments; every way to find the map among few, some and most
+/// of them in every shape, with the default filter: of how it filters, the text that selects knows nothing but the
+/// reach.
+pub(crate) fn chosen() -> impl Iterator<Item = WgslKey> {
+    WgslKey::all().filter(|key| match key.maps {
+        1 => is_usual(key) || key.shape == MapShape::Affine,
+        maps => is_usual(key) && COUNTS.contains(&maps) && key.filter == Pcf::Hardware2x2,
+    })
+}
+
+/// The choices can fail: they have all that they promise.
 #[test]
 fn chosen_keys_have_every_choice() {
-    let keys: Vec<_> = chosen().collect();
-    let one = Pcf::ALL.len() * MapShape::ALL.len();
-    assert_eq!(keys.len(), one + COUNTS.len() * Select::ALL.len() * 2 * MapShape::ALL.len());
+    let (shapes, moments, usual) = (MapShape::ALL.len(), Moments::all().count(), 1 + different().len());
+    let depths = Pcf::ALL.len() * shapes;
+    let one = depths + different().len() * (shapes - 1) + moments;
+    assert_eq!(chosen().count(), one + COUNTS.len() * WAYS * shapes * usual);
+    let of_depths = depths * (1 + 7 * WAYS);
+    let some = different().len() * COUNTS.len() * WAYS * shapes;
+    // Some of four affine maps found by containment are among the different ones.
+    let four = moments - different().len();
+    assert_eq!(covering().count(), of_depths + moments * shapes + some + four);
 }

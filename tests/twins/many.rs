@@ -5,7 +5,7 @@ use antumbra::encoding::split::{OnMap, antumbra_index, antumbra_room, antumbra_v
 use antumbra::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::gpu::{Gpu, read_depth};
 use antumbra::wgsl::{self, Bindings};
-use antumbra::{MapBudget, MapShape, Pcf, Select, ShadowFrame, ViewUniforms, WgslKey};
+use antumbra::{MapBudget, MapShape, Pcf, Select, ShadowFrame, Texel, ViewUniforms, WgslKey};
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec3, Vec4};
 
@@ -41,7 +41,7 @@ fn twins_agree_on_several_maps() {
     for shape in MapShape::ALL {
         for (select, blend) in Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]) {
             for filter in [Pcf::Hardware2x2, Pcf::Box3x3] {
-                let key = WgslKey { filter, shape, maps: MAPS, select, blend };
+                let key = WgslKey { texel: Texel::Depth, filter, shape, maps: MAPS, select, blend };
                 // All maps in use, and one left over.
                 for views in [MAPS, MAPS - 1] {
                     let tally = compare(&gpu, key, views.into());

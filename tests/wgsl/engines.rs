@@ -55,17 +55,17 @@ fn composes_unchanged_under_naga_oil() {
                 ..Default::default()
             })
             .unwrap_or_else(|error| panic!("{key:?}: {error}"));
-        let [texture, view] =
-            if key.maps > 1 { ["texture_depth_2d_array", "views[1]"] } else { ["texture_depth_2d", "view"] };
+        let view = if key.maps > 1 { "views[1]" } else { "view" };
         let source = "
             #import antumbra::{AntumbraUniforms, antumbra_visible}
             @group(2) @binding(0) var<uniform> uniforms: AntumbraUniforms;
             @group(2) @binding(1) var map: TEXTURE;
-            @group(2) @binding(2) var compare: sampler_comparison;
+            @group(2) @binding(2) var compare: SAMPLER;
             @fragment fn fragment(@location(0) position: vec3f) -> @location(0) vec4f {
                 return vec4f(antumbra_visible(uniforms.VIEW, map, compare, position, vec3f(0.0, 1.0, 0.0)));
             }"
-        .replace("TEXTURE", texture)
+        .replace("TEXTURE", wgsl::texture(key))
+        .replace("SAMPLER", wgsl::sampler(key))
         .replace("VIEW", view);
         let module = composer
             .make_naga_module(NagaModuleDescriptor { source: &source, file_path: "host.wgsl", ..Default::default() })
@@ -88,7 +88,12 @@ fn converts_to_other_languages() {
         for version in Glsl::ALL {
             let text =
                 library.glsl_library(version).unwrap_or_else(|error| panic!("{key:?} {version:?}: {error}")).text;
-            let sampler = if key.maps > 1 { "sampler2DArrayShadow" } else { "sampler2DShadow" };
+            let sampler = match wgsl::texture(key) {
+                "texture_depth_2d" => "sampler2DShadow",
+                "texture_depth_2d_array" => "sampler2DArrayShadow",
+                "texture_2d<f32>" => "sampler2D",
+                _ => "sampler2DArray",
+            };
             assert!(text.contains("antumbra_visible(") && text.contains(sampler), "{key:?} {version:?}");
             let fragment = linked.glsl(version, "fragment").unwrap_or_else(|error| panic!("{key:?}: {error}"));
             let textures: Vec<_> = fragment.samplers.iter().map(|(_, texture)| texture.as_str()).collect();
@@ -114,7 +119,10 @@ fn converts_to_other_languages() {
 #[test]
 fn pipelines_accept_the_layouts() {
     use gpu::wgpu;
-    let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+    let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor {
+        required_features: chosen().map(gpu::required_features).reduce(|all, more| all | more).unwrap(),
+        ..Default::default()
+    });
     for key in chosen() {
         let maps = u32::from(key.maps);
         let map = antumbra::MapBudget { side: 64, layers: maps, views: maps };

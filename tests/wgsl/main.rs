@@ -10,9 +10,9 @@ mod walkers;
 use antumbra::transpile::Shader;
 use antumbra::{WgslKey, wgsl};
 
-/// Every key with its library: the fragments, without bindings.
+/// Keys that cover every choice, each with its library: the fragments, without bindings.
 fn libraries() -> impl Iterator<Item = (WgslKey, String, Shader)> {
-    WgslKey::all().map(|key| {
+    keys::covering().map(|key| {
         let (text, shader) = library(key);
         (key, text, shader)
     })

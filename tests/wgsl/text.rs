@@ -4,9 +4,10 @@ use std::mem::offset_of;
 
 use antumbra::transpile::Shader;
 use antumbra::transpile::naga::{self, Expression, Statement, TypeInner};
-use antumbra::{MAX_VIEWS, MapShape, Pcf, Select, ShadowUniforms, ViewUniforms, WgslKey, wgsl};
+use antumbra::{MAX_VIEWS, MapShape, Moments, Pcf, Select, ShadowUniforms, Texel, ViewUniforms, WgslKey, wgsl};
 
 use crate::host::{PLACES, has_two_stages, host, lookups};
+use crate::keys::covering;
 use crate::libraries;
 use crate::walkers::{any_statement, samples};
 
@@ -35,7 +36,7 @@ fn every_item_has_the_prefix() {
         }
     }
     // What the generator adds.
-    for key in WgslKey::all() {
+    for key in covering() {
         let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
         let variables: Vec<_> =
             shader.module.global_variables.iter().map(|(_, variable)| variable.name.clone()).collect();
@@ -83,10 +84,15 @@ fn no_derivatives_and_no_pointers() {
     }
 }
 
+/// Of a series, two terms are sampled at a time, from layers of an array.
+fn is_series(key: WgslKey) -> bool {
+    matches!(key.texel, Texel::Moments(moments) if moments.layers() > 1)
+}
+
 /// One map costs neither a loop nor an array of maps.
 #[test]
 fn one_lookup_is_straight_code() {
-    for key in WgslKey::all().filter(|key| key.maps == 1) {
+    for key in WgslKey::all().filter(|key| key.maps == 1 && !is_series(*key)) {
         let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(lookups(key)).unwrap();
         assert!(shader.module.functions.len() >= 3, "{key:?}: nothing was looked at");
         for (_, ty) in shader.module.types.iter() {
@@ -106,12 +112,13 @@ fn one_lookup_is_straight_code() {
 /// or, with blending, at the last one that has a share.
 #[test]
 fn samples_per_lookup() {
-    for key in WgslKey::all() {
+    for key in covering() {
         let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
-        let expected = match key.filter {
-            Pcf::Point | Pcf::Hardware2x2 => 1,
-            Pcf::Box3x3 => 4,
-            Pcf::Box5x5 => 9,
+        let expected = match (key.texel, key.filter) {
+            (Texel::Moments(moments), _) if !moments.linear => 0,
+            (Texel::Moments(_), _) | (_, Pcf::Point | Pcf::Hardware2x2) => 1,
+            (_, Pcf::Box3x3) => 4,
+            (_, Pcf::Box5x5) => 9,
         };
         assert_eq!(samples(&shader.module, "antumbra_visible"), expected, "{key:?}");
         let lookups = if key.select == Select::Depth && key.blend { 2 } else { 1 };
@@ -129,7 +136,7 @@ fn functions(key: WgslKey) -> Vec<String> {
 /// lookup, and one way to find the map among several.
 #[test]
 fn two_stages_are_for_one_affine_map_alone() {
-    for key in WgslKey::all() {
+    for key in covering() {
         let functions = functions(key);
         let has = |name: &str| functions.iter().any(|function| function == name);
         let affine = key.shape == MapShape::Affine;
@@ -149,7 +156,8 @@ fn two_stages_are_for_one_affine_map_alone() {
 fn keys_are_all_there() {
     let keys: Vec<_> = WgslKey::all().collect();
     let several = (MAX_VIEWS - 1) * Select::ALL.len() * 2;
-    assert_eq!(keys.len(), Pcf::ALL.len() * MapShape::ALL.len() * (1 + several));
+    let filters = Pcf::ALL.len() + Moments::all().count();
+    assert_eq!(keys.len(), filters * MapShape::ALL.len() * (1 + several));
     assert_eq!(keys.iter().collect::<std::collections::HashSet<_>>().len(), keys.len());
     assert!(keys.iter().all(|key| key.maps > 1 || (key.select == Select::Depth && !key.blend)));
     for (filter, shape) in Pcf::ALL.iter().flat_map(|filter| MapShape::ALL.map(|shape| (*filter, shape))) {
@@ -176,6 +184,8 @@ fn layouts_agree() {
         ("across_v", offset_of!(ViewUniforms, across_v)),
         ("across_w", offset_of!(ViewUniforms, across_w)),
         ("domain", offset_of!(ViewUniforms, domain)),
+        ("pixel_from_render", offset_of!(ViewUniforms, pixel_from_render)),
+        ("moments", offset_of!(ViewUniforms, moments)),
     ];
     assert_eq!(size_of::<ViewUniforms>(), 208);
     for (key, _, shader) in libraries() {
