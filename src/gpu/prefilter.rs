@@ -15,7 +15,10 @@ use crate::texel::{BlurUniforms, MomentFormat, Moments};
 #[must_use]
 pub(super) fn required_features(moments: Moments) -> wgpu::Features {
     let exact = match moments.format() {
-        MomentFormat::Unorm16 => wgpu::Features::TEXTURE_FORMAT_16BIT_NORM,
+        // The second is what lets them be drawn into.
+        MomentFormat::Unorm16 => {
+            wgpu::Features::TEXTURE_FORMAT_16BIT_NORM | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+        }
         _ => wgpu::Features::empty(),
     };
     let linear = match moments.format() {

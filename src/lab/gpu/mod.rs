@@ -134,7 +134,8 @@ impl Gpu {
         // Everything it can hold; timestamps, and formats of moments, if it has them.
         let wanted = wgpu::Features::TIMESTAMP_QUERY
             | wgpu::Features::FLOAT32_FILTERABLE
-            | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM;
+            | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
+            | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("antumbra laboratory"),
             required_features: adapter.features() & wanted,
