@@ -1,4 +1,8 @@
 //! The stage of a remix: what a map stores, how it is filtered, and how it is read.
+//!
+//! # References
+//! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987: compare, then average.
+//! - Donnelly & Lauritzen, *Variance shadow maps*, 2006: average, then compare.
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
 use crate::error::{FitError, finite};
