@@ -47,9 +47,6 @@ distance; *points*: a few hundred visible positions as well; *depths*: those and
 looked up in the first map that holds them. *Cascades*: equal error, finest, least-error warp.
 ";
 
-<<<<<<< HEAD
-pub(crate) fn page(meta: &[(&str, String)], records: &[Record], shared: &[Record]) -> String {
-=======
 /// What a search by hand found, once; it is not repeated by every run.
 const LEFT: &str = "
 ## What planes leave on the table
@@ -76,8 +73,7 @@ A warp chosen for all samples behind its first plane mends that picture, and is 
 depths.
 ";
 
-pub(crate) fn page(meta: &[(&str, String)], records: &[Record]) -> String {
->>>>>>> planes
+pub(crate) fn page(meta: &[(&str, String)], records: &[Record], shared: &[Record]) -> String {
     let mut text = HEAD.to_owned();
     text.push('\n');
     for (name, value) in meta {
