@@ -83,14 +83,11 @@ pub(crate) fn page(meta: &[(&str, String)], records: &[Record], shared: &[Record
     for (set, name) in [("shared", "case files"), ("built-in", "built-in scenes")] {
         techniques(&mut text, name, &records.iter().filter(|record| record.set == set).collect::<Vec<_>>());
     }
-<<<<<<< HEAD
     text.push_str(SHARES);
     for (set, name) in [("shared", "case files"), ("built-in", "built-in scenes")] {
         shares(&mut text, name, &shared.iter().filter(|record| record.set == set).collect::<Vec<_>>());
     }
-=======
     text.push_str(LEFT);
->>>>>>> planes
     cases(&mut text, records);
     text
 }
