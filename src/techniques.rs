@@ -103,7 +103,7 @@ named! {
 
     /// The exponential variance shadow map, focused: variance of two exponentials.
     ///
-    /// A. Lauritzen, M. McCool, *Layered variance shadow maps*, Graphics Interface 2008.
+    /// A. Lauritzen, M. `McCool`, *Layered variance shadow maps*, Graphics Interface 2008.
     evsm "evsm" Split::One, Warp::Focused, moments(MomentKind::ExponentialVarianceFour);
 
     /// The moment shadow map, focused: four moments, Hamburger.

@@ -132,9 +132,10 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
         Texel::Moments(moments) => fragments.extend(moments::read(moments, is_arrayed(key))),
     }
     fragments.extend(look(key).into_iter().map(Cow::Borrowed));
-    fragments.push(Cow::Borrowed(match is_arrayed(key) {
-        true => include_str!("../shaders/visibility_many.wgsl"),
-        false => include_str!("../shaders/visibility_one.wgsl"),
+    fragments.push(Cow::Borrowed(if is_arrayed(key) {
+        include_str!("../shaders/visibility_many.wgsl")
+    } else {
+        include_str!("../shaders/visibility_one.wgsl")
     }));
     fragments
 }

@@ -154,17 +154,7 @@ impl Fitter<'_> {
         let mut extremes =
             extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| squares(vertex)));
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
-        // Say what was cut.
-        if window.size().min_element() < 3.0 * margin {
-            frame.leave_out(Part::Window(self.index), Why::Degenerate { widened_to: window.size().min_element() });
-        }
-        if texels.border < texels.wanted {
-            frame
-                .leave_out(Part::Border(self.index), Why::MapTooSmall { border: texels.border, wanted: texels.wanted });
-        }
-        if self.tile.side < self.tile.of {
-            frame.leave_out(Part::Texels(self.index), self.how.share.why(self.tile));
-        }
+        self.report(window, margin, frame);
         let (ring, corner) = (texels.ring, self.tile.corner);
         let drawn_side = self.tile.side - 2 * ring;
         let view = ShadowView {
@@ -189,6 +179,20 @@ impl Fitter<'_> {
             frame.uniforms.counts[0] += 1;
         }
         Ok(())
+    }
+
+    /// Says what was cut of a view.
+    fn report(&self, window: &Window, margin: f64, frame: &mut ShadowFrame) {
+        let narrow = window.size().min_element();
+        if narrow < 3.0 * margin {
+            frame.leave_out(Part::Window(self.index), Why::Degenerate { widened_to: narrow });
+        }
+        if let Some(why) = self.texels.too_small() {
+            frame.leave_out(Part::Border(self.index), why);
+        }
+        if self.tile.side < self.tile.of {
+            frame.leave_out(Part::Texels(self.index), self.how.share.why(self.tile));
+        }
     }
 
     /// The depth of snapped maps: the scene's, so that maps can be kept, where f32 resolves it to a part of a texel.

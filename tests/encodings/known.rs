@@ -1,8 +1,9 @@
-//! Printed and verified numbers: `MATH.md` section 10 rows 19 to 22 and section 7.
+//! Printed and verified numbers: `MATH.md` section 10 rows 19 to 23 and section 7.
 
 use antumbra::encoding::convolution::{
     ANTUMBRA_CONVOLUTION_RANGE, antumbra_convolution_part, antumbra_convolution_terms,
 };
+use antumbra::encoding::depth::antumbra_lookup;
 use antumbra::encoding::exponential::{
     antumbra_exponential_lit, antumbra_exponential_variance_lit, antumbra_exponential_variance_lit_two,
     antumbra_warped_depth,
@@ -12,7 +13,8 @@ use antumbra::encoding::moments::{
     antumbra_moments_unpacked,
 };
 use antumbra::encoding::variance::{antumbra_darkened, antumbra_variance_lit};
-use glam::Vec2;
+use antumbra::{Aabb, Camera, Encoding, FitInput, Light, MapBudget, Pcf, Remix, Scene, ShadowTechnique, techniques};
+use glam::{DVec3, Vec2, Vec4};
 
 use crate::sets::Set;
 
@@ -102,6 +104,35 @@ fn row_22_four_moments() {
     near(within(0.3), 0.024_007_53, 1e-3);
     // Where the least distribution on the line stays within the range there is nothing to gain.
     assert_eq!(within(0.55), shadow(0.55));
+}
+
+/// A plane at 60°, across both axes of the map alike: how far receivers are lifted along the light, which is that far
+/// over the cosine along the normal. The reference is for texels of 0.05; the shader adds what rounding may take.
+#[test]
+fn row_23_slope_bias() {
+    let remix = Remix { encoding: Encoding::Depth(Pcf::Point), ..techniques::ssm() };
+    let input = FitInput {
+        camera: Camera::perspective(glam::DMat4::IDENTITY, 1.0, 1.0, 0.1, 100.0),
+        light: Light::Directional { travel: DVec3::new(0.3, -0.9, 0.2).normalize() },
+        scene: Scene::within(Aabb::new(DVec3::splat(-20.0), DVec3::splat(20.0))),
+        map: MapBudget::one(1024),
+        origin: DVec3::ZERO,
+        previous: None,
+    };
+    let frame = remix.fit(&input).unwrap();
+    let view = &frame.uniforms.views[0];
+    let [u, v, depth] =
+        [view.u_from_render, view.v_from_render, view.depth_from_render].map(|row| Vec4::from_array(row).truncate());
+    let (cosine, sine) = (0.5_f32, 0.75_f32.sqrt());
+    let normal = sine * (u.normalize() + v.normalize()).normalize() - cosine * depth.normalize();
+    let at = |normal| antumbra_lookup(view, glam::Vec3::ZERO, normal, 0.5, 0.5).depth;
+    let lift = (at(glam::Vec3::ZERO) - at(normal)) / depth.length();
+    // Texels of this map are not square: with equal shares of both axes their mean side counts.
+    let sides = frame.views[0].texel.world;
+    let mean = 0.5 * (sides[0] + sides[1]);
+    let scale = mean / 0.05 * (0.5 + view.bias[0]) / 0.5;
+    near(lift, 0.061_237_243_569_579_45 * f64::from(scale), 1e-3);
+    near(lift * cosine, 0.030_618_621_784_789_72 * f64::from(scale), 1e-3);
 }
 
 /// 0.5 stored everywhere and read at 0.51: what a bias for 16 bits lets through.
