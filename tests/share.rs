@@ -103,6 +103,37 @@ fn differ(one: &ShadowFrame, other: &ShadowFrame) -> bool {
     one.views.len() == other.views.len() && sides(one) != sides(other)
 }
 
+/// A map of the whole scene serves all slices behind its own, and gets the texels for that.
+#[test]
+fn a_map_of_the_whole_scene_takes_over() {
+    let bounds = Aabb::new(DVec3::new(-40.0, -1.0, -40.0), DVec3::new(40.0, 4.0, 40.0));
+    let light = Light::Directional { travel: DVec3::new(0.5, -0.7, 0.4).normalize() };
+    let map = MapBudget { side: SIDE, layers: LAYERS, views: 8 };
+    let scene = Scene::within(bounds);
+    let input = FitInput { camera: camera(0.2), light, scene, map, origin: DVec3::ZERO, previous: None };
+    let splits = DepthSplits {
+        maps: 8,
+        scheme: Scheme::Practical { lambda: 0.7, offset: 0.0 },
+        enough: 0.0,
+        ..DepthSplits::DEFAULT
+    };
+    let remix = Remix { split: Split::Depth(splits), stabilise: Stabilise::SnapTexels, ..remix(8, Share::LeastError) };
+    let frame = remix.fit(&input).expect("legal");
+    let last = frame.views.len() - 1;
+    let served: Vec<u8> = frame
+        .left_out
+        .iter()
+        .filter(|cut| cut.why == Why::ServedBy { view: last as u8 })
+        .filter_map(|cut| if let Part::Split(split) = cut.part { Some(split) } else { None })
+        .collect();
+    println!("{:?}: {served:?}", sides(&frame));
+    assert!(last > 0 && last < 7, "{:?}", frame.left_out);
+    assert_eq!(served, (last as u8 + 1..8).collect::<Vec<_>>());
+    assert_eq!(sides(&frame)[last], SIDE, "{:?}", frame.left_out);
+    let lines = frame.left_out.iter().filter(|cut| cut.part == Part::Stabilise(last as u8)).count();
+    assert_eq!(lines, 1, "what was taken back is not told twice");
+}
+
 /// Where sizes would change with every frame, they stay what they were in the frame before. Maps that stand still, cut
 /// at depths that do, never change.
 #[test]
