@@ -37,10 +37,13 @@ pub enum Share {
     Equal,
     /// No more than each needs for the worst texels in the picture to be no worse: the side is halved, up to three times,
     /// where that leaves texels that are no larger in the picture than those of the worst map of the frame. Saves
-    /// texels, and layers; for the same picture error where it is most.
+    /// texels, and now and then layers; the picture is hardly worse. Splits of equal error leave little to save.
     EqualError,
     /// All the texels of `map.layers` layers, where they lower the predicted picture error most: sides are halved, up to
     /// three times, until the maps fit. There can be more maps than layers.
+    ///
+    /// For budgets of few layers: four maps in one layer show fewer wrong pixels than one map of it. Where each map can
+    /// have a layer, more and smaller maps in the same texels show more (`docs/SPLITS.md`).
     LeastError,
 }
 
