@@ -42,8 +42,8 @@ fn sides(frame: &ShadowFrame) -> Vec<u32> {
     frame.views.iter().map(|view| view.viewport.z + 2).collect()
 }
 
-/// What is given away is what no one sees: every map's texels stay as fine, in the picture, as the worst one's, and with
-/// one more halving they would not.
+/// What is given away is what no one sees: every map's texels stay as fine, in the picture, as the worst one's, and
+/// with one more halving they would not.
 #[test]
 fn equal_errors_are_equal() {
     let splits = DepthSplits { maps: 2, scheme: Scheme::Manual([10.0; 7]), enough: 0.0, ..DepthSplits::DEFAULT };
@@ -226,8 +226,8 @@ fn neighbours_are_not_read() {
     }
 }
 
-/// Wherever a receiver lies, and whatever its filter, one map of light among maps of darkness reads light beyond what is
-/// drawn, if the texels around it are light.
+/// Wherever a receiver lies, and whatever its filter, one map of light among maps of darkness reads light beyond what
+/// is drawn, if the texels around it are light.
 #[test]
 fn beyond_a_tile_is_light() {
     for filter in Pcf::ALL {
