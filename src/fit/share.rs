@@ -36,8 +36,8 @@ pub enum Share {
     #[default]
     Equal,
     /// No more than each needs for the worst texels in the picture to be no worse: the side is halved, up to three
-    /// times, where that leaves texels that are no larger in the picture than those of the worst map of the frame. Saves
-    /// texels, and now and then layers; the picture is hardly worse. Splits of equal error leave little to save.
+    /// times, where that leaves texels that are no larger in the picture than those of the worst map of the frame.
+    /// Saves texels, and now and then layers; the picture is hardly worse. Splits of equal error leave little to save.
     EqualError,
     /// All the texels of `map.layers` layers, where they lower the predicted picture error most: sides are halved, up
     /// to three times, until the maps fit. There can be more maps than layers.
