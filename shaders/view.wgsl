@@ -14,9 +14,9 @@ struct AntumbraView {
     bias: vec4f,
     // The part of the map that is drawn, in texture coordinates: min, max. Texels outside stay lit.
     rect: vec4f,
-    // Warped maps: what the fall of a plane over a texel step is made of (lookup_projective.wgsl), x to z. The last members:
-    // layer of the map; eye depth at which several maps that are found by containment begin to give way to light, and one
-    // over the length of that band (both of the first view).
+    // Warped maps: what the fall of a plane over a texel step is made of (lookup_projective.wgsl), x to z. The last
+    // members: layer of the map; eye depth at which several maps that are found by containment begin to give way to
+    // light, and one over the length of that band (both of the first view).
     across_u: vec4f,
     across_v: vec4f,
     across_w: vec4f,

@@ -12,8 +12,8 @@ use crate::texel::{BlurUniforms, Texel};
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
 
-/// Most lines of [`ShadowFrame::left_out`]: six a view (receivers, window, border, texels, and two of the warp), and five
-/// of the whole.
+/// Most lines of [`ShadowFrame::left_out`]: six a view (receivers, window, border, texels, and two of the warp), and
+/// five of the whole.
 pub const MAX_LEFT_OUT: usize = 6 * MAX_VIEWS + 5;
 
 /// Most planes of a [`CullVolume`].

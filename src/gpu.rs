@@ -244,9 +244,9 @@ impl ShadowMaps {
         Err(GpuError::Viewport { view: index, viewport: at, layer: view.layer, side: self.side, layers })
     }
 
-    /// Begins the depth pass of a view: its tile of the layer cleared to the farthest depth, its viewport set; what other
-    /// views have in the layer stays. The engine binds, and draws. Layers beyond the last that the maps have, which [`prepare`](Self::prepare) refuses, are the last
-    /// one.
+    /// Begins the depth pass of a view: its tile of the layer cleared to the farthest depth, its viewport set; what
+    /// other views have in the layer stays. The engine binds, and draws. Layers beyond the last that the maps have,
+    /// which [`prepare`](Self::prepare) refuses, are the last one.
     pub fn caster_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,

@@ -42,8 +42,8 @@ fn sides(frame: &ShadowFrame) -> Vec<u32> {
     frame.views.iter().map(|view| view.viewport.z + 2).collect()
 }
 
-/// What is given away is what no one sees: every map's texels stay as fine, in the picture, as the worst one's, and with
-/// one more halving they would not.
+/// What is given away is what no one sees: every map's texels stay as fine, in the picture, as the worst one's, and
+/// with one more halving they would not.
 #[test]
 fn equal_errors_are_equal() {
     let splits = DepthSplits { maps: 2, scheme: Scheme::Manual([10.0; 7]), enough: 0.0, ..DepthSplits::DEFAULT };
@@ -101,6 +101,37 @@ fn more_maps_than_layers() {
 /// Whether two frames of equally many maps give them other sizes.
 fn differ(one: &ShadowFrame, other: &ShadowFrame) -> bool {
     one.views.len() == other.views.len() && sides(one) != sides(other)
+}
+
+/// A map of the whole scene serves all slices behind its own, and gets the texels for that.
+#[test]
+fn a_map_of_the_whole_scene_takes_over() {
+    let bounds = Aabb::new(DVec3::new(-40.0, -1.0, -40.0), DVec3::new(40.0, 4.0, 40.0));
+    let light = Light::Directional { travel: DVec3::new(0.5, -0.7, 0.4).normalize() };
+    let map = MapBudget { side: SIDE, layers: LAYERS, views: 8 };
+    let scene = Scene::within(bounds);
+    let input = FitInput { camera: camera(0.2), light, scene, map, origin: DVec3::ZERO, previous: None };
+    let splits = DepthSplits {
+        maps: 8,
+        scheme: Scheme::Practical { lambda: 0.7, offset: 0.0 },
+        enough: 0.0,
+        ..DepthSplits::DEFAULT
+    };
+    let remix = Remix { split: Split::Depth(splits), stabilise: Stabilise::SnapTexels, ..remix(8, Share::LeastError) };
+    let frame = remix.fit(&input).expect("legal");
+    let last = frame.views.len() - 1;
+    let served: Vec<u8> = frame
+        .left_out
+        .iter()
+        .filter(|cut| cut.why == Why::ServedBy { view: last as u8 })
+        .filter_map(|cut| if let Part::Split(split) = cut.part { Some(split) } else { None })
+        .collect();
+    println!("{:?}: {served:?}", sides(&frame));
+    assert!(last > 0 && last < 7, "{:?}", frame.left_out);
+    assert_eq!(served, (last as u8 + 1..8).collect::<Vec<_>>());
+    assert_eq!(sides(&frame)[last], SIDE, "{:?}", frame.left_out);
+    let lines = frame.left_out.iter().filter(|cut| cut.part == Part::Stabilise(last as u8)).count();
+    assert_eq!(lines, 1, "what was taken back is not told twice");
 }
 
 /// Where sizes would change with every frame, they stay what they were in the frame before. Maps that stand still, cut
@@ -195,8 +226,8 @@ fn neighbours_are_not_read() {
     }
 }
 
-/// Wherever a receiver lies, and whatever its filter, one map of light among maps of darkness reads light beyond what is
-/// drawn, if the texels around it are light.
+/// Wherever a receiver lies, and whatever its filter, one map of light among maps of darkness reads light beyond what
+/// is drawn, if the texels around it are light.
 #[test]
 fn beyond_a_tile_is_light() {
     for filter in Pcf::ALL {

@@ -6,8 +6,8 @@ mod common;
 use antumbra::encoding::depth::antumbra_look;
 use antumbra::encoding::split::{antumbra_index, antumbra_room};
 use antumbra::{
-    Aabb, DepthSplits, Encoding, Part, Pcf, Remix, Scheme, Select, ShadowFrame, ShadowTechnique, Share, Split,
-    Stabilise, Warp, WgslKey,
+    Aabb, DepthSplits, Encoding, FitInput, Part, Pcf, Remix, Scheme, Select, ShadowFrame, ShadowTechnique, Share,
+    Split, Stabilise, Warp, WgslKey,
 };
 use common::tally::Tally;
 use common::{Inputs, caster, in_view, inputs, receiver, shares, sound};
@@ -197,6 +197,11 @@ proptest! {
         CASES.count(0);
         let frame = sound(remix, &inputs)?;
         tiles_are_apart(&frame, &remix, inputs.layers)?;
+        // A frame that follows itself keeps its sizes.
+        let again = remix.fit(&FitInput { previous: Some(&frame), ..inputs.fit_input() }).unwrap();
+        tiles_are_apart(&again, &remix, inputs.layers)?;
+        let sides = |frame: &ShadowFrame| frame.views.iter().map(|view| view.viewport.z).collect::<Vec<_>>();
+        prop_assert_eq!(sides(&again), sides(&frame));
         // Slices ascend, and leave no gap that is not accounted for.
         let domains = frame.uniforms.views[..frame.views.len()].iter().map(|view| view.domain);
         let planes: Vec<f32> = domains.flat_map(|domain| [domain[0], domain[1]]).collect();

@@ -1,6 +1,6 @@
-//! What splits buy: wrong pixels of parallel splits over λ, of this crate's cascades, with and without knowledge of what
-//! is seen, and of maps that share their texels. `cargo bench --bench split_sweep` writes `docs/SPLITS.md` and `target/split_sweep/sweep.csv`; with `--
-//! NAME`, cases whose name contains that alone, and no page.
+//! What splits buy: wrong pixels of parallel splits over λ, of this crate's cascades, with and without knowledge of
+//! what is seen, and of maps that share their texels. `cargo bench --bench split_sweep` writes `docs/SPLITS.md` and
+//! `target/split_sweep/sweep.csv`; with `-- NAME`, cases whose name contains that alone, and no page.
 
 mod page;
 

@@ -82,7 +82,8 @@ impl Fitter<'_> {
         Cuts { slices, margin, profile }
     }
 
-    /// As many slices as there are texels for maps. Maps without room for their filter's border do not know what they hold.
+    /// As many slices as there are texels for maps. Maps without room for their filter's border do not know what they
+    /// hold.
     fn budget(&self, splits: &DepthSplits, frame: &mut ShadowFrame) -> u8 {
         let map = &self.input.map;
         let budget = u32::from(splits.maps).min(map.views).min(self.most_maps()) as u8;

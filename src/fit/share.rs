@@ -1,5 +1,5 @@
-//! How many texels each of several maps gets, and where they are: squares that are the layer's side divided by powers of
-//! two, packed into layers.
+//! How many texels each of several maps gets, and where they are: squares that are the layer's side divided by powers
+//! of two, packed into layers.
 //!
 //! ```text
 //! (1)  e_i(k) = T_i / (2 t(k))          side of a texel after k halvings, world units; t: texels over the window
@@ -8,8 +8,8 @@
 //! ```
 //!
 //! T is the extent of a slice across the light, width and height together. [`Share::EqualError`] halves maps as long as
-//! (2) stays below the worst one's at full side; [`Share::LeastError`] halves, one after the other, the map in which (3)
-//! rises least for each texel that is freed, until all fit.
+//! (2) stays below the worst one's at full side; [`Share::LeastError`] halves, one after the other, the map in which
+//! (3) rises least for each texel that is freed, until all fit.
 //!
 //! # References
 //! - Lloyd, Tuft, Yoon & Manocha, *Warping and partitioning for low error shadow maps*, 2006: texels by the error of
@@ -35,12 +35,15 @@ pub enum Share {
     /// A layer each, all of it. There are at most as many maps as `map.layers`.
     #[default]
     Equal,
-    /// No more than each needs for the worst texels in the picture to be no worse: the side is halved, up to three times,
-    /// where that leaves texels that are no larger in the picture than those of the worst map of the frame. Saves
-    /// texels, and layers; for the same picture error where it is most.
+    /// No more than each needs for the worst texels in the picture to be no worse: the side is halved, up to three
+    /// times, where that leaves texels that are no larger in the picture than those of the worst map of the frame.
+    /// Saves texels, and now and then layers; the picture is hardly worse. Splits of equal error leave little to save.
     EqualError,
-    /// All the texels of `map.layers` layers, where they lower the predicted picture error most: sides are halved, up to
-    /// three times, until the maps fit. There can be more maps than layers.
+    /// All the texels of `map.layers` layers, where they lower the predicted picture error most: sides are halved, up
+    /// to three times, until the maps fit. There can be more maps than layers.
+    ///
+    /// For budgets of few layers: four maps in one layer show fewer wrong pixels than one map of it. Where each map can
+    /// have a layer, more and smaller maps in the same texels show more (`docs/SPLITS.md`).
     LeastError,
 }
 
@@ -216,8 +219,8 @@ fn area(all: &[u32]) -> u32 {
     all.iter().map(|halvings| cells(*halvings)).sum()
 }
 
-/// Upper left corner of a cell, which are numbered quarter by quarter, and within each in the same order. Odd sides leave
-/// a row and a column of texels over.
+/// Upper left corner of a cell, which are numbered quarter by quarter, and within each in the same order. Odd sides
+/// leave a row and a column of texels over.
 fn corner(cell: u32, side: u32) -> UVec2 {
     (1..=MOST_HALVINGS).fold(UVec2::ZERO, |corner, halvings| {
         let quarter = cell / cells(halvings) % 4;

@@ -41,8 +41,8 @@ impl Fitter<'_> {
         self.finish(splits, range, frame);
     }
 
-    /// One map for each slice that needs one; ends early with the number of a slice whose map turns out to be one of the
-    /// whole scene, but was given fewer texels than a layer for that slice alone.
+    /// One map for each slice that needs one; ends early with the number of a slice whose map turns out to be one of
+    /// the whole scene, but was given fewer texels than a layer for that slice alone.
     fn lay_out_all(
         &self,
         body: &FocusBody,

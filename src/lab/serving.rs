@@ -92,7 +92,8 @@ mod tests {
         let visible = Visible::draw(&subject.model, &setting.camera, setting.origin);
         for select in Select::ALL {
             let (.., frame) = frames(&subject, &setting, &visible, select);
-            let (dark, light) = ([-2.0; 16], [2.0; 16]);
+            // Nearer than any receiver, and farther than that of a view that is not in use.
+            let (dark, light) = ([-0.9; 16], [2.0; 16]);
             let mut served = [0; 3];
             for Hit { position, normal, .. } in visible.iter().copied() {
                 let view = serving(&frame, &setting.camera, setting.origin, position, normal);

@@ -10,10 +10,10 @@ use antumbra::{
 };
 use glam::DVec3;
 
-use crate::{SIZE, Stage, support};
+use crate::{SIZE, Stage, support, wrong_in_the_interior};
 
 /// Side of a layer, texels.
-const SIDE: u32 = 512;
+const SIDE: u32 = 1024;
 
 /// Layers, for six maps.
 const LAYERS: u32 = 2;
@@ -65,6 +65,10 @@ fn tiles_are_maps() {
         let ((together, maps), (alone, _)) = (draw(&stage, camera, &frame), draw(&stage, camera, &apart));
         assert_eq!(maps.layers(), LAYERS);
         assert!(together == alone && together.contains(&0), "{remix:?}");
+        // Away from edges it is the rays' picture: texels of tiles know their bias.
+        let (wrong, counted) = wrong_in_the_interior(&stage.model, &camera, &together);
+        eprintln!("{:?}: {wrong} of {counted} wrong", frame.wgsl);
+        assert!(counted > 50_000 && wrong * 2_000 < counted, "{remix:?}: {wrong} of {counted}");
         let software = cpu::render(&subject, &visible, &frame, &setting).mask;
         let differ = together.iter().zip(&software).filter(|(gpu, cpu)| gpu.abs_diff(**cpu) > 16).count();
         assert!(differ * 500 < together.len(), "{remix:?}: {differ} pixels differ");
