@@ -1,5 +1,6 @@
 //! The shader contract: what every text of the library promises to the engines that paste it into theirs.
 
+mod cost;
 mod engines;
 mod host;
 #[path = "../common/keys.rs"]
