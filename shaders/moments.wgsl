@@ -1,7 +1,3 @@
-// Share of a spread distribution that is mixed to the moments, so that rounding cannot make them impossible. Less, and
-// lone surfaces flicker; more, and light leaks behind casters that are near their receivers.
-const ANTUMBRA_MOMENTS_BIAS: f32 = 1e-6;
-
 // Least variance, and the least third pivot for each unit of it: below, depths are one. Products of f32 that are not
 // fused lose as much.
 const ANTUMBRA_MOMENTS_VARIANCE: f32 = 1e-7;
@@ -9,13 +5,6 @@ const ANTUMBRA_MOMENTS_PIVOT: f32 = 1e-10;
 
 // Below every divisor that matters; keeps roots and shares finite.
 const ANTUMBRA_MOMENTS_SMALLEST: f32 = 1e-30;
-
-// What a texel stores of a depth: four moments of it, on the range -1 to 1.
-fn antumbra_moments(depth: f32) -> vec4f {
-    let z = 2.0 * depth - 1.0;
-    let square = z * z;
-    return vec4f(z, square, square * z, square * square);
-}
 
 // Moments that belong to some distribution, whatever rounding has made of them.
 fn antumbra_moments_sound(moments: vec4f, bias: f32) -> vec4f {

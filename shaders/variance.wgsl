@@ -1,9 +1,3 @@
-// What a texel stores of a depth: two moments about the middle of the range, where they are smallest.
-fn antumbra_variance_moments(depth: f32) -> vec2f {
-    let centred = depth - 0.5;
-    return vec2f(centred, centred * centred);
-}
-
 // Share of the light at a depth by two moments of depth: a bound from above. loss: what rounding may have taken from
 // the variance, more than 0.
 fn antumbra_variance_lit(moments: vec2f, depth: f32, loss: f32) -> f32 {

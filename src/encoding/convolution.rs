@@ -1,4 +1,4 @@
-//! A Fourier series of the step between shadow and light: the Rust twins of `shaders/convolution.wgsl`.
+//! A Fourier series of the step between shadow and light: the Rust twins of `shaders/convolution*.wgsl`.
 //!
 //! ```text
 //! (1)  s(t) = ½ + 2 Σ_{k=1..M} (1/c_k) (cos(c_k t) ⟨sin(c_k z)⟩ − sin(c_k t) ⟨cos(c_k z)⟩),  c_k = π (2k − 1)

@@ -1,4 +1,4 @@
-//! Exponentials of depth: the Rust twins of `shaders/exponential.wgsl` and `exponential_variance.wgsl`.
+//! Exponentials of depth: the Rust twins of `shaders/exponential*.wgsl`.
 //!
 //! ```text
 //! (1)  ESM    lit = min(1, e^(c (z̄ − t))),  z̄ = (1/c) ln Σ wᵢ e^(c zᵢ)

@@ -1,5 +1,5 @@
-//! Four moments of depth: the Rust twins of `shaders/moments.wgsl`, `moments_hamburger.wgsl`, `moments_hausdorff.wgsl` and
-//! `moments_sixteen.wgsl`.
+//! Four moments of depth: the Rust twins of `shaders/moments.wgsl`, `moments_hamburger.wgsl`, `moments_hausdorff.wgsl`,
+//! `moments_lit.wgsl`, `moments_stored.wgsl`, `moments_packed.wgsl` and `moments_unpacked.wgsl`.
 //!
 //! Of all distributions of depth with the given moments, the one with the least share before the receiver gives the
 //! shadow: it is never too dark. On the whole line (Hamburger) its depths are the receiver's and two roots; within the
@@ -24,7 +24,7 @@
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
-/// Twin of the shader's constant: share of a spread distribution that is mixed in, for moments of 32 bits.
+/// Share of a spread distribution that is mixed in, for moments of 32 bits.
 pub const ANTUMBRA_MOMENTS_BIAS: f32 = 1e-6;
 
 /// Twin of the shader's constant: least variance.

@@ -1,4 +1,4 @@
-//! Two moments of depth: the Rust twins of `shaders/chebyshev.wgsl` and `variance.wgsl`.
+//! Two moments of depth: the Rust twins of `shaders/chebyshev.wgsl`, `darkened.wgsl` and `variance*.wgsl`.
 //!
 //! ```text
 //! (1)  μ = M₁,  σ² = max(M₂ − M₁², 0) + loss

@@ -4,67 +4,18 @@ use std::borrow::Cow;
 
 use arrayvec::ArrayVec;
 
-use crate::texel::{MomentFormat, MomentKind, Moments};
-
-/// Most fragments that define what is stored.
-const MAX_STORED: usize = 5;
-
-/// What is stored of a depth, and the numbers that depend on its format.
-fn stored(moments: Moments) -> ArrayVec<Cow<'static, str>, MAX_STORED> {
-    const CHEBYSHEV: &str = include_str!("../../shaders/chebyshev.wgsl");
-    let mut fragments = ArrayVec::new();
-    let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
-    match moments.kind() {
-        MomentKind::Variance => {
-            push(CHEBYSHEV);
-            push(include_str!("../../shaders/variance.wgsl"));
-        }
-        MomentKind::Exponential => push(include_str!("../../shaders/exponential.wgsl")),
-        MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
-            push(CHEBYSHEV);
-            push(include_str!("../../shaders/exponential_variance.wgsl"));
-        }
-        MomentKind::Convolution => push(include_str!("../../shaders/convolution.wgsl")),
-        MomentKind::Hamburger | MomentKind::Hausdorff => {
-            push(include_str!("../../shaders/moments.wgsl"));
-            push(include_str!("../../shaders/moments_hamburger.wgsl"));
-            if moments.kind() == MomentKind::Hausdorff {
-                push(include_str!("../../shaders/moments_hausdorff.wgsl"));
-            }
-            if moments.format() == MomentFormat::Unorm16 {
-                push(include_str!("../../shaders/moments_sixteen.wgsl"));
-            }
-        }
-    }
-    fragments.push(numbers(moments).into());
-    fragments
-}
-
-/// The numbers that depend on the format, as constants.
-fn numbers(moments: Moments) -> String {
-    let [far, near] = moments.exponents();
-    match moments.kind() {
-        MomentKind::Variance => format!("const ANTUMBRA_VARIANCE_LOSS: f32 = {:e};", moments.variance_loss()),
-        MomentKind::Exponential => format!("const ANTUMBRA_EXPONENT: f32 = {:e};", moments.exponent()),
-        MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => format!(
-            "const ANTUMBRA_EXPONENTS = vec2f({far:e}, {near:e});\nconst ANTUMBRA_BLUR: f32 = {:e};",
-            moments.blur()
-        ),
-        MomentKind::Convolution => format!("const ANTUMBRA_TERMS: u32 = {}u;", crate::texel::CONVOLUTION_TERMS),
-        MomentKind::Hamburger | MomentKind::Hausdorff => {
-            format!("const ANTUMBRA_MOMENTS_MIXED: f32 = {:e};", moments.moment_bias())
-        }
-    }
-}
+use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments};
 
 /// Most fragments that read a map of moments.
-const MAX_READ: usize = MAX_STORED + 5;
+const MAX_READ: usize = 10;
 
 /// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps are
 /// layers of an array.
 pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str>, MAX_READ> {
-    let mut fragments: ArrayVec<_, MAX_READ> = stored(moments).into_iter().collect();
+    let mut fragments = ArrayVec::new();
+    fragments.push(read_numbers(moments).into());
     let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
+    lit(moments).into_iter().for_each(&mut push);
     push(include_str!("../../shaders/darkened.wgsl"));
     // What is stored at a place.
     push(match (moments.linear, arrayed) {
@@ -79,18 +30,6 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
         (false, true) => push(include_str!("../../shaders/sample_loads_levels.wgsl")),
     }
     // What it says.
-    let sixteen = moments.format() == MomentFormat::Unorm16;
-    match moments.kind() {
-        MomentKind::Variance => push(include_str!("../../shaders/read_variance.wgsl")),
-        MomentKind::Exponential => push(include_str!("../../shaders/read_exponential.wgsl")),
-        MomentKind::ExponentialVarianceTwo => push(include_str!("../../shaders/read_exponential_variance_two.wgsl")),
-        MomentKind::ExponentialVarianceFour => push(include_str!("../../shaders/read_exponential_variance.wgsl")),
-        MomentKind::Convolution => {}
-        MomentKind::Hamburger if sixteen => push(include_str!("../../shaders/read_hamburger_sixteen.wgsl")),
-        MomentKind::Hamburger => push(include_str!("../../shaders/read_hamburger.wgsl")),
-        MomentKind::Hausdorff if sixteen => push(include_str!("../../shaders/read_hausdorff_sixteen.wgsl")),
-        MomentKind::Hausdorff => push(include_str!("../../shaders/read_hausdorff.wgsl")),
-    }
     push(match moments.kind() {
         MomentKind::Convolution => include_str!("../../shaders/read_convolution.wgsl"),
         _ => include_str!("../../shaders/read_moments.wgsl"),
@@ -98,28 +37,132 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
     fragments
 }
 
+/// Share of the light by what is stored.
+fn lit(moments: Moments) -> ArrayVec<&'static str, 5> {
+    const CHEBYSHEV: &str = include_str!("../../shaders/chebyshev.wgsl");
+    const BENT: &str = include_str!("../../shaders/exponential_variance.wgsl");
+    let mut fragments = ArrayVec::new();
+    let mut add = |texts: &[&'static str]| fragments.extend(texts.iter().copied());
+    match moments.kind() {
+        MomentKind::Variance => add(&[
+            CHEBYSHEV,
+            include_str!("../../shaders/variance.wgsl"),
+            include_str!("../../shaders/read_variance.wgsl"),
+        ]),
+        MomentKind::Exponential => {
+            add(&[include_str!("../../shaders/exponential.wgsl"), include_str!("../../shaders/read_exponential.wgsl")]);
+        }
+        MomentKind::ExponentialVarianceTwo => add(&[
+            CHEBYSHEV,
+            BENT,
+            include_str!("../../shaders/exponential_variance_two.wgsl"),
+            include_str!("../../shaders/read_exponential_variance_two.wgsl"),
+        ]),
+        MomentKind::ExponentialVarianceFour => add(&[
+            CHEBYSHEV,
+            BENT,
+            include_str!("../../shaders/exponential_variance_four.wgsl"),
+            include_str!("../../shaders/read_exponential_variance.wgsl"),
+        ]),
+        MomentKind::Convolution => {
+            add(&[include_str!("../../shaders/convolution.wgsl"), include_str!("../../shaders/convolution_read.wgsl")]);
+        }
+        MomentKind::Hamburger | MomentKind::Hausdorff => {
+            add(&[include_str!("../../shaders/moments.wgsl"), include_str!("../../shaders/moments_hamburger.wgsl")]);
+            add(four(moments));
+        }
+    }
+    fragments
+}
+
+/// What four moments need beyond roots and least shares.
+fn four(moments: Moments) -> &'static [&'static str] {
+    const UNPACKED: &str = include_str!("../../shaders/moments_unpacked.wgsl");
+    const WITHIN: &str = include_str!("../../shaders/moments_hausdorff.wgsl");
+    match (moments.kind(), moments.format()) {
+        (MomentKind::Hausdorff, MomentFormat::Unorm16) => {
+            &[WITHIN, UNPACKED, include_str!("../../shaders/read_hausdorff_sixteen.wgsl")]
+        }
+        (MomentKind::Hausdorff, _) => &[WITHIN, include_str!("../../shaders/read_hausdorff.wgsl")],
+        (_, MomentFormat::Unorm16) => &[
+            include_str!("../../shaders/moments_lit.wgsl"),
+            UNPACKED,
+            include_str!("../../shaders/read_hamburger_sixteen.wgsl"),
+        ],
+        _ => &[include_str!("../../shaders/moments_lit.wgsl"), include_str!("../../shaders/read_hamburger.wgsl")],
+    }
+}
+
+/// The numbers that depend on the format and are read, as constants.
+fn read_numbers(moments: Moments) -> String {
+    match moments.kind() {
+        MomentKind::Variance => format!("const ANTUMBRA_VARIANCE_LOSS: f32 = {:e};", moments.variance_loss()),
+        MomentKind::Exponential => stored_numbers(moments),
+        MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
+            format!("{}\nconst ANTUMBRA_BLUR: f32 = {:e};", stored_numbers(moments), moments.blur())
+        }
+        MomentKind::Convolution => format!("const ANTUMBRA_TERMS: u32 = {CONVOLUTION_TERMS}u;"),
+        MomentKind::Hamburger | MomentKind::Hausdorff => {
+            format!("const ANTUMBRA_MOMENTS_MIXED: f32 = {:e};", moments.moment_bias())
+        }
+    }
+}
+
+/// The numbers that depend on the format and are stored with, as constants.
+fn stored_numbers(moments: Moments) -> String {
+    match moments.kind() {
+        MomentKind::Exponential => format!("const ANTUMBRA_EXPONENT: f32 = {:e};", moments.exponent()),
+        MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
+            let [far, near] = moments.exponents();
+            format!("const ANTUMBRA_EXPONENTS = vec2f({far:e}, {near:e});")
+        }
+        _ => String::new(),
+    }
+}
+
+/// What is stored of a depth.
+fn stored(moments: Moments) -> &'static [&'static str] {
+    match (moments.kind(), moments.format()) {
+        (MomentKind::Variance, _) => {
+            &[include_str!("../../shaders/variance_stored.wgsl"), include_str!("../../shaders/store_variance.wgsl")]
+        }
+        (MomentKind::Exponential, _) => &[
+            include_str!("../../shaders/exponential_stored.wgsl"),
+            include_str!("../../shaders/exponential_mean.wgsl"),
+            include_str!("../../shaders/store_exponential.wgsl"),
+        ],
+        (MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour, _) => &[
+            include_str!("../../shaders/exponential_variance.wgsl"),
+            include_str!("../../shaders/exponential_variance_stored.wgsl"),
+            include_str!("../../shaders/store_exponential_variance.wgsl"),
+        ],
+        (MomentKind::Convolution, _) => {
+            &[include_str!("../../shaders/convolution.wgsl"), include_str!("../../shaders/store_convolution.wgsl")]
+        }
+        (MomentKind::Hamburger | MomentKind::Hausdorff, MomentFormat::Unorm16) => &[
+            include_str!("../../shaders/moments_stored.wgsl"),
+            include_str!("../../shaders/moments_packed.wgsl"),
+            include_str!("../../shaders/store_moments_sixteen.wgsl"),
+        ],
+        (MomentKind::Hamburger | MomentKind::Hausdorff, _) => {
+            &[include_str!("../../shaders/moments_stored.wgsl"), include_str!("../../shaders/store_moments.wgsl")]
+        }
+    }
+}
+
 /// The whole text of the passes that filter a map of depths into one of moments: entry points and bindings in group 0.
 #[must_use]
 pub(super) fn prefilter(moments: Moments) -> String {
-    let store = match (moments.kind(), moments.format()) {
-        (MomentKind::Variance, _) => include_str!("../../shaders/store_variance.wgsl"),
-        (MomentKind::Exponential, _) => include_str!("../../shaders/store_exponential.wgsl"),
-        (MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour, _) => {
-            include_str!("../../shaders/store_exponential_variance.wgsl")
-        }
-        (MomentKind::Convolution, _) => include_str!("../../shaders/store_convolution.wgsl"),
-        (_, MomentFormat::Unorm16) => include_str!("../../shaders/store_moments_sixteen.wgsl"),
-        (MomentKind::Hamburger | MomentKind::Hausdorff, _) => include_str!("../../shaders/store_moments.wgsl"),
-    };
     let mean = match moments.kind() {
         MomentKind::Exponential => include_str!("../../shaders/mean_exponential.wgsl"),
         _ => include_str!("../../shaders/mean.wgsl"),
     };
-    let mut text = String::new();
-    let rest = [include_str!("../../shaders/blur.wgsl"), store, mean, include_str!("../../shaders/prefilter.wgsl")];
-    for fragment in stored(moments).iter().map(AsRef::as_ref).chain(rest) {
-        text.push_str(fragment);
+    let passes = [mean, include_str!("../../shaders/prefilter.wgsl")];
+    let mut text = stored_numbers(moments);
+    let blur = core::iter::once(include_str!("../../shaders/blur.wgsl"));
+    for fragment in blur.chain(stored(moments).iter().copied()).chain(passes) {
         text.push('\n');
+        text.push_str(fragment);
     }
     text
 }
