@@ -58,7 +58,10 @@ fn run(quick: bool) -> Result<(), String> {
     }
     println!("{} ({})", backend.adapter(), backend.name());
     let programme = Programme {
-        techniques: techniques::NAMED.iter().map(|(name, technique)| ((*name).to_owned(), technique())).collect(),
+        techniques: techniques::NAMED
+            .iter()
+            .map(|(name, technique)| ((*name).to_owned(), backend.adapted(&technique())))
+            .collect(),
         sizes: if quick { SIZES[1..4].to_vec() } else { SIZES.to_vec() },
         repetitions: REPETITIONS,
     };

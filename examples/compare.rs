@@ -74,10 +74,11 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), String> {
     let start = Instant::now();
     // Check everything before anything is drawn.
-    let programme = programme(arguments)?;
+    let mut programme = programme(arguments)?;
     let assignments = assignments(arguments)?;
     cli::writable_folder(&arguments.out)?;
     let (mut backend, why_not) = Backend::open(arguments.backend.into())?;
+    programme.techniques.iter_mut().for_each(|(_, remix)| *remix = backend.adapted(remix));
     let mut report = Report {
         title: "Shadow techniques compared".to_owned(),
         command: command_line(),

@@ -63,6 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     writable(&arguments.out)?;
     arguments.timing.as_deref().map_or(Ok(()), writable)?;
     let (mut backend, why_not) = Backend::open(arguments.backend.into())?;
+    let technique = backend.adapted(&technique);
     // Draw.
     let shot = Studio::new(&mut backend, &subject, Setting::of(&case))
         .and_then(|mut studio| studio.shoot(&technique, size, arguments.repetitions))

@@ -91,6 +91,22 @@ impl Backend {
         }
     }
 
+    /// A remix in the formats that the renderer has ([`supported`](crate::gpu::supported)); the software renderer has all.
+    #[must_use]
+    pub fn adapted(&self, remix: &Remix) -> Remix {
+        let features = match self {
+            Self::Gpu(gpu, _) => gpu.device().features(),
+            Self::Cpu => wgpu::Features::all(),
+        };
+        match remix.encoding {
+            Encoding::Moments(prefilter) => {
+                let moments = crate::gpu::supported(prefilter.moments, features);
+                Remix { encoding: Encoding::Moments(Prefilter { moments, ..prefilter }), ..*remix }
+            }
+            _ => *remix,
+        }
+    }
+
     /// Name of the adapter, or of the software renderer.
     #[must_use]
     pub fn adapter(&self) -> String {
