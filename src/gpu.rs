@@ -27,6 +27,7 @@
 //!     pass.set_bind_group(0, maps.caster_bind_group(), &[maps.caster_offset(index)]);
 //!     draw(&mut pass); // the objects for which `view.cull.may_cast` holds
 //! }
+//! maps.filter(&mut encoder, &frame, &mut |_, _| None); // maps of moments; nothing for maps of depths
 //! // In the engine's own pass: `pass.set_bind_group(2, maps.bind_group(), &[])`.
 //! queue.submit([encoder.finish()]);
 //! # let _ = lighting; Ok(())
