@@ -58,7 +58,7 @@ fn numbers(moments: Moments) -> String {
 }
 
 /// Most fragments that read a map of moments.
-const MAX_READ: usize = MAX_STORED + 5;
+const MAX_READ: usize = MAX_STORED + 6;
 
 /// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps are
 /// layers of an array.
@@ -67,6 +67,9 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
     let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
     push(include_str!("../../shaders/darkened.wgsl"));
     // What is stored at a place.
+    if arrayed {
+        push(include_str!("../../shaders/rim.wgsl"));
+    }
     push(match (moments.linear, arrayed) {
         (true, false) => include_str!("../../shaders/sample_linear_one.wgsl"),
         (true, true) => include_str!("../../shaders/sample_linear_many.wgsl"),
