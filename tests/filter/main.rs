@@ -2,6 +2,9 @@
 //! formats on adapters that have them and on those that have not, and what costs nothing.
 
 mod bound;
+#[path = "../common/dice.rs"]
+#[allow(dead_code, unreachable_pub, reason = "a part of it is used here")]
+mod dice;
 mod fallbacks;
 mod formats;
 mod left_out;

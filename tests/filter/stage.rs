@@ -3,7 +3,6 @@
 use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::gpu::{Gpu, GpuScene, RenderOptions, Renderer, read_depth};
 use antumbra::lab::moments::MomentMap;
-use antumbra::lab::scene::SceneModel;
 use antumbra::{
     Camera, DepthSplits, Encoding, FitInput, Light, MapBudget, MomentFormat, MomentKind, Moments, Prefilter, Radius,
     Remix, Scene, ShadowFrame, ShadowTechnique, Share, Split, Texel, WgslKey, techniques,
@@ -18,7 +17,6 @@ pub(crate) const SIZE: UVec2 = UVec2::new(160, 120);
 /// The boxes on an adapter.
 pub(crate) struct Stage {
     pub(crate) gpu: Gpu,
-    pub(crate) model: SceneModel,
     pub(crate) scene: GpuScene,
 }
 
@@ -28,9 +26,8 @@ impl Stage {
     }
 
     pub(crate) fn on(gpu: Gpu) -> Self {
-        let model = support::boxes();
-        let scene = GpuScene::upload(&gpu, &model, DVec3::ZERO).unwrap();
-        Self { gpu, model, scene }
+        let scene = GpuScene::upload(&gpu, &support::boxes(), DVec3::ZERO).unwrap();
+        Self { gpu, scene }
     }
 
     /// The ways to keep moments that its device can draw and read.
