@@ -1,8 +1,10 @@
 // What is stored around the place that is looked up in a level, from its four nearest texels: for formats that samplers
-// do not interpolate. Beyond the map it is what its rim stores, as if there were no other map beside it.
+// do not interpolate. Beyond the map it is what its rim stores, as if there were no other map beside it:
+// the centres of its rim are farther from that in smaller levels.
 fn antumbra_stored_in(map: texture_2d_array<f32>, look: AntumbraLookup, level: u32) -> vec4f {
     let size = vec2i(textureDimensions(map, level));
-    let at = clamp(look.uv, look.low, look.high) * vec2f(size) - 0.5;
+    let rim = antumbra_rim(map, look.level);
+    let at = clamp(look.uv, look.low + rim, look.high - rim) * vec2f(size) - 0.5;
     let first = vec2i(floor(at));
     let share = at - floor(at);
     let last = size - 1;

@@ -19,7 +19,8 @@ pub struct Moments {
     format: MomentFormat,
     /// Whether samplers interpolate the format; otherwise the shader does, from four texels.
     pub linear: bool,
-    /// Whether far texels are read from smaller copies of the map.
+    /// Whether far texels are read from smaller copies of the map. Maps that share a layer ([`Share`](crate::Share)) are
+    /// read from those in which they are whole texels: all of them, where sides are powers of two of 512 or more.
     pub mips: bool,
 }
 

@@ -96,5 +96,6 @@ pub fn antumbra_filtered(
     } else {
         antumbra_read(moments, map.stored(look.uv, level, 0), depth, look.slope)
     };
-    antumbra_darkened(lit, view.moments[0])
+    // Nothing is nearer, whatever is stored: maps that were never drawn are lit.
+    if look.depth < 0.0 { 1.0 } else { antumbra_darkened(lit, view.moments[0]) }
 }

@@ -45,8 +45,16 @@ impl<M: CompareMap> CompareMap for OnMap<'_, M> {
     }
 
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
-        self.layer.stored(uv.max(self.low).min(self.high), level, pair)
+        let rim = antumbra_rim(self.size(), level);
+        self.layer.stored(uv.max(self.low + rim).min(self.high - rim), level, pair)
     }
+}
+
+/// Twin of `antumbra_rim`: from the centres of the outermost texels of a map to those of the smaller level that is
+/// read, or of the smaller one of two, texture coordinates. Levels are 0 to 31, `size` is that of level 0.
+#[must_use]
+pub fn antumbra_rim(size: UVec2, level: f32) -> Vec2 {
+    0.5 * ((1_u32 << (level.ceil() as u32).min(31)) - 1) as f32 / size.as_vec2()
 }
 
 /// Twin of `antumbra_visibility`: share of the light that reaches a point of render space. A view whose layer is not

@@ -3,6 +3,7 @@
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
+use crate::content::Tile;
 use crate::encoding::blur::{ANTUMBRA_BLUR_MOST, antumbra_blur_reach};
 use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::fit::snap::{self, Stabilise};
@@ -107,11 +108,17 @@ impl Fitter<'_> {
         } else {
             DVec4::W
         };
-        let last = if prefilter.moments.mips { prefilter.moments.last_level(self.tile.of) } else { 0 };
+        let last = prefilter.moments.last_level(self.tile.of).min(self.whole_levels());
         if last > 0 {
             uniforms.pixel_from_render = (pixel / pixels).as_vec4().to_array();
         }
         uniforms.moments = [prefilter.dark, last as f32, 0.0, 0.0];
+    }
+
+    /// Last level in which the tile is whole texels: beyond it they are shared with other maps.
+    fn whole_levels(&self) -> u32 {
+        let Tile { corner, side, of, .. } = self.tile;
+        if side == of { u32::MAX } else { (corner.x | corner.y | side | of).trailing_zeros() }
     }
 }
 

@@ -7,7 +7,7 @@ use arrayvec::ArrayVec;
 use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments};
 
 /// Most fragments that read a map of moments.
-const MAX_READ: usize = 10;
+const MAX_READ: usize = 12;
 
 /// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps are
 /// layers of an array.
@@ -18,6 +18,9 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
     lit(moments).into_iter().for_each(&mut push);
     push(include_str!("../../shaders/darkened.wgsl"));
     // What is stored at a place.
+    if arrayed {
+        push(include_str!("../../shaders/rim.wgsl"));
+    }
     push(match (moments.linear, arrayed) {
         (true, false) => include_str!("../../shaders/sample_linear_one.wgsl"),
         (true, true) => include_str!("../../shaders/sample_linear_many.wgsl"),

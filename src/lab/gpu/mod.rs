@@ -20,7 +20,7 @@ use crate::gpu::GpuError;
 
 pub use baseline::Race;
 pub use clock::{Clock, PassTimes};
-pub use readback::read_depth;
+pub use readback::{read_depth, read_moments};
 pub use render::{GpuImage, RenderOptions, Renderer};
 pub use scene::GpuScene;
 
@@ -119,6 +119,20 @@ impl Gpu {
     /// # Errors
     /// There is no adapter.
     pub fn new() -> Result<Self, GpuUnavailable> {
+        // Timestamps, and formats of moments.
+        Self::with_features(
+            wgpu::Features::TIMESTAMP_QUERY
+                | wgpu::Features::FLOAT32_FILTERABLE
+                | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
+                | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
+        )
+    }
+
+    /// The same, with those of the `wanted` features that the adapter has, and no others.
+    ///
+    /// # Errors
+    /// There is no adapter.
+    pub fn with_features(wanted: wgpu::Features) -> Result<Self, GpuUnavailable> {
         let unavailable = |reason: &dyn fmt::Display| GpuUnavailable { reason: reason.to_string() };
         // Take the adapter that the environment names, else the fastest.
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
@@ -131,11 +145,7 @@ impl Gpu {
             }))
         };
         let adapter = adapter.map_err(|error| unavailable(&error))?;
-        // Everything it can hold; timestamps, and formats of moments, if it has them.
-        let wanted = wgpu::Features::TIMESTAMP_QUERY
-            | wgpu::Features::FLOAT32_FILTERABLE
-            | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
-            | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+        // Everything it can hold.
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("antumbra laboratory"),
             required_features: adapter.features() & wanted,

@@ -1,9 +1,11 @@
 //! From the GPU to memory.
 
-use glam::UVec2;
+use glam::{UVec2, Vec4};
+use half::f16;
 
 use super::{Gpu, GpuFailure};
 use crate::gpu::ShadowMaps;
+use crate::texel::{MomentFormat, Moments, Texel};
 
 /// The contents of the map on a layer, the last one for layers that there are not: depths row by row, row 0 on top.
 ///
@@ -16,11 +18,54 @@ pub fn read_depth(gpu: &Gpu, maps: &ShadowMaps, layer: u32) -> Result<Vec<f32>, 
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
+/// What a level of a layer of filtered maps stores, row by row, row 0 on top; numbers that a texel has not are 0. A
+/// series has [`Moments::layers`] layers for each map. Nothing for maps of depths; the last layer and level for those
+/// that there are not.
+///
+/// # Errors
+/// The device failed.
+pub fn read_moments(gpu: &Gpu, maps: &ShadowMaps, layer: u32, level: u32) -> Result<Vec<Vec4>, GpuFailure> {
+    let (Texel::Moments(moments), Some(texture)) = (maps.key().texel, maps.moments_texture()) else {
+        return Ok(Vec::new());
+    };
+    let layer = layer.min(texture.depth_or_array_layers() - 1);
+    let level = level.min(texture.mip_level_count() - 1);
+    let size = UVec2::splat((texture.width() >> level).max(1));
+    let texel_bytes = moments.bytes() / moments.layers();
+    let bytes = read_level(gpu, texture, (layer, level), size, texel_bytes)?;
+    Ok(bytes.chunks_exact(texel_bytes as usize).map(|texel| numbers(moments, texel)).collect())
+}
+
+/// The numbers of a texel.
+fn numbers(moments: Moments, texel: &[u8]) -> Vec4 {
+    let size = moments.format().bits() as usize / 8;
+    let mut numbers = [0.0; 4];
+    for (number, bytes) in numbers.iter_mut().zip(texel.chunks_exact(size)) {
+        *number = match (moments.format(), bytes) {
+            (MomentFormat::Float32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
+            (MomentFormat::Float16, &[a, b]) => f16::from_le_bytes([a, b]).to_f32(),
+            (MomentFormat::Unorm16, &[a, b]) => f32::from(u16::from_le_bytes([a, b])) / f32::from(u16::MAX),
+            (_, bytes) => f32::from(bytes[0]) / f32::from(u8::MAX),
+        };
+    }
+    Vec4::from_array(numbers)
+}
+
 /// Bytes of a texture's layer, rows packed.
 pub(super) fn read_layer(
     gpu: &Gpu,
     texture: &wgpu::Texture,
     layer: u32,
+    size: UVec2,
+    texel_bytes: u32,
+) -> Result<Vec<u8>, GpuFailure> {
+    read_level(gpu, texture, (layer, 0), size, texel_bytes)
+}
+
+fn read_level(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    (layer, mip_level): (u32, u32),
     size: UVec2,
     texel_bytes: u32,
 ) -> Result<Vec<u8>, GpuFailure> {
@@ -35,7 +80,11 @@ pub(super) fn read_layer(
     });
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, ..texture.as_image_copy() },
+        wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            mip_level,
+            ..texture.as_image_copy()
+        },
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
