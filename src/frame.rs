@@ -7,6 +7,7 @@ use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 use crate::content::{Content, Place};
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
+use crate::split::depth::MAX_PLANES;
 use crate::texel::{BlurUniforms, Texel};
 
 /// Most views of one light.
@@ -155,6 +156,9 @@ pub struct ShadowFrame {
     pub left_out: ArrayVec<LeftOut, MAX_LEFT_OUT>,
     /// The predicted sampling error over all views.
     pub predicted: Footprint,
+    /// Eye depths of the planes that were searched for, ends included, world units, ascending: the next frame may keep
+    /// them. None where nothing was searched.
+    pub(crate) planes: ArrayVec<f64, MAX_PLANES>,
 }
 
 impl ShadowFrame {
@@ -167,6 +171,7 @@ impl ShadowFrame {
             map,
             left_out: ArrayVec::new(),
             predicted: Footprint::NONE,
+            planes: ArrayVec::new(),
         }
     }
 

@@ -3,7 +3,8 @@
 mod common;
 
 use antumbra::{
-    Aabb, Camera, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, Split, techniques,
+    Aabb, Camera, DepthSplits, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, Split,
+    Stabilise, techniques,
 };
 use common::dice::Dice;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4Swizzles};
@@ -226,6 +227,97 @@ fn warped_maps_are_continuous() {
             "fsm" => assert!(found.jumps.len() <= MOST_SWITCHES, "{name}: {:?}", found.jumps),
             _ => assert!(found.jumps.len() <= MOST_VALLEYS, "{name} jumps on paths {:?}", found.jumps),
         }
+    }
+}
+
+/// Layers of the maps that are split.
+const LAYERS: u32 = 4;
+
+/// Planes that move by more than this share of their depth in a step have leapt.
+const LEAP: f64 = 0.1;
+
+impl Path {
+    /// What is seen: where the rays of the picture leave the world.
+    fn seen(&self, time: f64) -> Vec<DVec3> {
+        let (camera, up) = (self.camera(time), (0.5 * self.fov).tan());
+        let eye = camera.eye();
+        let hit = |index: u32| {
+            let x = (f64::from(index % 32) + 0.5) / 16.0 - 1.0;
+            let y = (f64::from(index / 32) + 0.5) / 12.0 - 1.0;
+            let direction = camera.world_from_view.transform_vector3(DVec3::new(x * up * 1.5, y * up, -1.0));
+            let sides = ((self.world.min - eye) / direction).max((self.world.max - eye) / direction);
+            let leaves = sides.min_element();
+            (0.3 < leaves && leaves < self.far).then(|| eye + direction * leaves)
+        };
+        (0..32 * 24).filter_map(hit).collect()
+    }
+
+    /// Split maps, told what is seen or not, and what there was before or not.
+    fn split(&self, remix: &Remix, time: f64, told: bool, previous: Option<&ShadowFrame>) -> ShadowFrame {
+        let (_, _, travel) = self.at(time);
+        let seen = if told { self.seen(time) } else { Vec::new() };
+        let input = FitInput {
+            camera: self.camera(time),
+            light: Light::Directional { travel },
+            scene: Scene { visible_points: &seen, ..Scene::within(self.world) },
+            map: MapBudget { side: SIDE, layers: LAYERS, views: LAYERS },
+            origin: DVec3::ZERO,
+            previous,
+        };
+        remix.fit(&input).expect("legal")
+    }
+}
+
+/// Steps of all paths, those in which a plane leaps, and those in which the texels of a map grow or shrink.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steps {
+    all: usize,
+    leaps: usize,
+    resized: usize,
+}
+
+impl Steps {
+    fn count(&mut self, before: &ShadowFrame, after: &ShadowFrame) {
+        let planes = |frame: &ShadowFrame, index: usize| f64::from(frame.uniforms.views[index].domain[0]);
+        let moved = |index: usize| (planes(after, index) / planes(before, index)).ln().abs();
+        self.all += 1;
+        self.leaps += usize::from((1..LAYERS as usize).any(|index| moved(index) > LEAP.ln_1p()));
+        let sizes = |frame: &ShadowFrame| frame.views.iter().map(|view| view.texel.world).collect::<Vec<_>>();
+        self.resized += usize::from(sizes(before) != sizes(after));
+    }
+}
+
+/// Of frames that know the one before, and of frames that do not, where both have all maps.
+fn leaps(remix: &Remix, told: bool) -> [Steps; 2] {
+    let mut found = [Steps::default(); 2];
+    for path in (0..100).map(Path::new) {
+        let mut last = [false; 2].map(|_| path.split(remix, 0.0, told, None));
+        for step in 1..=STEPS {
+            let time = step as f64 / STEPS as f64;
+            let next = [Some(&last[0]), None].map(|previous| path.split(remix, time, told, previous));
+            if last.iter().chain(&next).all(|frame| frame.views.len() == LAYERS as usize) {
+                found.iter_mut().zip(last.iter().zip(&next)).for_each(|(steps, (last, next))| steps.count(last, next));
+            }
+            last = next;
+        }
+    }
+    found
+}
+
+/// Planes of equal error leap, because the error is flat; those that know where they were do so at most a third as
+/// often. Maps that stand still keep their texels' size as long as their planes stay.
+#[test]
+fn planes_stay_where_they_were() {
+    let splits = DepthSplits { enough: 0.0, ..DepthSplits::DEFAULT };
+    let remix = Remix { split: Split::Depth(splits), ..techniques::cascades() };
+    for told in [false, true] {
+        let [followed, fresh] = leaps(&remix, told);
+        println!("what is seen is known {told}: {followed:?}, without what was before {fresh:?}");
+        assert!(fresh.all > 4000 && fresh.leaps > 100 && 3 * followed.leaps <= fresh.leaps);
+        let still = Remix { stabilise: Stabilise::SnapTexels, ..remix };
+        let [followed, fresh] = leaps(&still, told);
+        println!("still: {followed:?}, without what was before {fresh:?}");
+        assert!(fresh.resized > 100 && 3 * followed.resized <= fresh.resized && followed.leaps <= fresh.leaps);
     }
 }
 

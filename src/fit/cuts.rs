@@ -16,8 +16,8 @@ use crate::focus::FocusBody;
 use crate::frame::{MAX_VIEWS, Select, ShadowFrame};
 use crate::report::{Part, Why};
 use crate::scene::DepthRange;
-use crate::split::depth::{DepthSplits, planes};
-use crate::split::equal_error;
+use crate::split::depth::{DepthSplits, MAX_PLANES, planes};
+use crate::split::equal_error::{self, Cost};
 use crate::split::profile::Profile;
 
 /// Depth of a slice as a multiple of what f32 loses of positions: thinner ones are told apart by rounding alone. Larger
@@ -58,7 +58,7 @@ impl Fitter<'_> {
         let budget = self.budget(splits, frame);
         let profile = Profile::of(body, camera, self.travel, origin);
         let planes = planes(&splits.scheme, budget, range.near, range.far)
-            .unwrap_or_else(|| equal_error::planes(&profile, camera, self.input.scene.visible_points, budget, range));
+            .unwrap_or_else(|| self.searched(&profile, budget, range, frame));
         // Receivers know their places and their depths as well as f32 does.
         let reach = range.near.abs().max(range.far.abs());
         let margin = rounding_margin(&body.vertices, origin).max(rounding(reach, origin));
@@ -80,6 +80,21 @@ impl Fitter<'_> {
             }
         }
         Cuts { slices, margin, profile }
+    }
+
+    /// The planes of equal error: those of the previous frame as long as they are hardly worse. The next frame may keep
+    /// them in turn.
+    fn searched(
+        &self,
+        profile: &Profile,
+        maps: u8,
+        range: DepthRange,
+        frame: &mut ShadowFrame,
+    ) -> ArrayVec<f64, MAX_PLANES> {
+        let before = self.input.previous.map_or(&[][..], |previous| &previous.planes);
+        let cost = Cost::new(profile, &self.input.camera, self.input.scene.visible_points, range);
+        frame.planes = equal_error::planes(&cost, maps, before);
+        frame.planes.clone()
     }
 
     /// As many slices as there are texels for maps. Maps without room for their filter's border do not know what they

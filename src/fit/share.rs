@@ -120,7 +120,7 @@ impl Fitter<'_> {
         let still = self.how.stabilise == Stabilise::SnapTexels;
         let camera = &self.input.camera;
         let samples = if still { &[] } else { self.input.scene.visible_points };
-        let cost = Cost::of(&cuts.profile, camera, samples, range);
+        let cost = Cost::new(&cuts.profile, camera, samples, range);
         let slice = |&Cut { split, depth: DepthRange { near, far } }: &Cut| {
             let of_body = cuts.profile.size(near, far);
             let snapped = snap::size(&camera.projection, DepthRange { near, far });

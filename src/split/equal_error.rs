@@ -58,6 +58,10 @@ const CLASSES: usize = 48;
 /// Samples that weigh as much as knowing nothing does, as in the warp's predictor.
 const ENOUGH_SAMPLES: f64 = 8.0;
 
+/// By which share of the sum other planes must be better than those of the frame before. At 0 planes leap from one
+/// valley to the next as soon as that is deeper by rounding; at 1 they never move, however wrong they have become.
+const KEPT: f64 = 0.05;
+
 /// What a slice costs, as a function of its planes.
 pub(crate) struct Cost<'a> {
     profile: &'a Profile,
@@ -68,26 +72,18 @@ pub(crate) struct Cost<'a> {
     seen: [f64; CLASSES + 1],
 }
 
-/// The planes of `maps` slices, ascending, ends included.
+/// The planes of `maps` slices, ascending, ends included: those of the frame before, unless others are better by
+/// [`KEPT`]. `before`: its planes, of any range; of another number of slices, they are not read.
 ///
-/// Kind of promise: typical; a local optimum. O(maps · edges) evaluations of a few flops, O(samples).
-pub(crate) fn planes(
-    profile: &Profile,
-    camera: &Camera,
-    samples: &[DVec3],
-    maps: u8,
-    range: DepthRange,
-) -> ArrayVec<f64, MAX_PLANES> {
-    let start = Scheme::Practical { lambda: START, offset: 0.0 };
-    let mut planes = planes_of(&start, maps, range.near, range.far).unwrap_or_default();
-    let cost = Cost::of(profile, camera, samples, range);
-    for _ in 0..SWEEPS {
-        for index in 1..planes.len().saturating_sub(1) {
-            let (before, after) = (planes[index - 1], planes[index + 1]);
-            planes[index] = least(before, after, |plane| cost.of_slice(before, plane) + cost.of_slice(plane, after));
-        }
+/// Kind of promise: typical; a local optimum. A frame that follows itself has the same planes, bit by bit.
+/// O(maps · edges) evaluations of a few flops.
+pub(crate) fn planes(cost: &Cost, maps: u8, before: &[f64]) -> ArrayVec<f64, MAX_PLANES> {
+    let found = cost.searched(maps);
+    if before.len() != found.len() {
+        return found;
     }
-    planes
+    let kept = cost.clamped(before);
+    if cost.of(&found) < (1.0 - KEPT) * cost.of(&kept) { found } else { kept }
 }
 
 /// The place of the least cost between two depths, by golden section; even steps are even steps of logarithmic depth
@@ -119,7 +115,7 @@ fn span(DepthRange { near, far }: DepthRange) -> f64 {
 
 impl<'a> Cost<'a> {
     /// From samples of what is seen, O(samples); none is fine.
-    pub(crate) fn of(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
+    pub(crate) fn new(profile: &'a Profile, camera: &Camera, samples: &[DVec3], range: DepthRange) -> Self {
         let mut cost = Self { profile, range, scale: CLASSES as f64 / span(range), seen: [0.0; CLASSES + 1] };
         // Count what is seen; what is not known is spread evenly.
         let mut count = 0.0;
@@ -158,6 +154,37 @@ impl<'a> Cost<'a> {
     /// (3).
     pub(crate) fn seen(&self, near: f64, far: f64) -> f64 {
         self.before(far) - self.before(near)
+    }
+
+    /// Planes of a local optimum.
+    fn searched(&self, maps: u8) -> ArrayVec<f64, MAX_PLANES> {
+        let start = Scheme::Practical { lambda: START, offset: 0.0 };
+        let mut planes = planes_of(&start, maps, self.range.near, self.range.far).unwrap_or_default();
+        for _ in 0..SWEEPS {
+            for index in 1..planes.len().saturating_sub(1) {
+                let (before, after) = (planes[index - 1], planes[index + 1]);
+                planes[index] =
+                    least(before, after, |plane| self.of_slice(before, plane) + self.of_slice(plane, after));
+            }
+        }
+        planes
+    }
+
+    /// Planes of another range, in this one: its ends, and what is beyond them moved to them.
+    fn clamped(&self, planes: &[f64]) -> ArrayVec<f64, MAX_PLANES> {
+        let DepthRange { near, far } = self.range;
+        let last = planes.len().saturating_sub(1);
+        let within = |(index, plane): (usize, &f64)| match index {
+            0 => near,
+            index if index == last => far,
+            _ => plane.max(near).min(far),
+        };
+        planes.iter().take(MAX_PLANES).enumerate().map(within).collect()
+    }
+
+    /// (1).
+    fn of(&self, planes: &[f64]) -> f64 {
+        planes.windows(2).map(|pair| self.of_slice(pair[0], pair[1])).sum()
     }
 
     /// One summand of (1).

@@ -317,9 +317,19 @@ pub fn all_finite(frame: &ShadowFrame) -> bool {
 
 /// Everything is finite, equal inputs give equal bits, and no view means a reason.
 pub fn sound(remix: Remix, inputs: &Inputs) -> Result<ShadowFrame, TestCaseError> {
-    let frame = remix.fit(&inputs.fit_input()).unwrap();
+    sound_after(remix, inputs, None)
+}
+
+/// The same, after any frame.
+pub fn sound_after(
+    remix: Remix,
+    inputs: &Inputs,
+    previous: Option<&ShadowFrame>,
+) -> Result<ShadowFrame, TestCaseError> {
+    let input = FitInput { previous, ..inputs.fit_input() };
+    let frame = remix.fit(&input).unwrap();
     prop_assert!(all_finite(&frame), "{:?}: {:?}", remix.warp, frame);
-    let again = remix.fit(&inputs.fit_input()).unwrap();
+    let again = remix.fit(&input).unwrap();
     prop_assert_eq!(bytemuck::bytes_of(&frame.uniforms), bytemuck::bytes_of(&again.uniforms));
     prop_assert_eq!(&frame, &again);
     prop_assert!(!frame.views.is_empty() || !frame.left_out.is_empty());
