@@ -13,9 +13,9 @@ use crate::texel::{BlurUniforms, Texel};
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
 
-/// Most lines of [`ShadowFrame::left_out`]: six a view (receivers, window, border, texels, and two of the warp), and
-/// five of the whole.
-pub const MAX_LEFT_OUT: usize = 6 * MAX_VIEWS + 5;
+/// Most lines of [`ShadowFrame::left_out`]: seven a view (receivers, window, border, texels, penumbra, and two of the
+/// warp), and five of the whole.
+pub const MAX_LEFT_OUT: usize = 7 * MAX_VIEWS + 5;
 
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;
@@ -102,14 +102,26 @@ pub enum Pcf {
     Box3x3,
     /// A box five texels wide: 9 texture samples.
     Box5x5,
+    /// A box seven texels wide: 16 texture samples.
+    Box7x7,
+    /// A disc of three texels' radius: 12 texture samples in a spiral, which the engine may turn from pixel to pixel
+    /// (`antumbra_visibility_noisy`).
+    Disc,
+    /// Percentage-closer soft shadows: hard at contacts, and the softer the farther away casters are, as
+    /// [`Encoding::Soft`](crate::Encoding::Soft) says. 16 texels searched for casters, and where there are any, 16
+    /// texture samples over a disc, which the engine may turn. Depths are read as well as compared with, which GLSL
+    /// cannot ([`reads_depths`](Self::reads_depths)).
+    Pcss,
 }
 
 impl Pcf {
     /// All of them, cheapest first.
-    pub const ALL: [Self; 4] = [Self::Point, Self::Hardware2x2, Self::Box3x3, Self::Box5x5];
+    pub const ALL: [Self; 7] =
+        [Self::Point, Self::Hardware2x2, Self::Box3x3, Self::Box5x5, Self::Disc, Self::Box7x7, Self::Pcss];
 
     /// Distance in texels, along an axis of the map, from a point to the farthest texel centre that its filter reads.
-    /// Point: ½ (the texel the point lies in); bilinear: 1; an n×n box of bilinear samples: (n + 1)/2.
+    /// Point: ½ (the texel the point lies in); bilinear: 1; an n×n box of bilinear samples: (n + 1)/2; a disc
+    /// of them: its radius and 1.
     #[must_use]
     pub const fn reach(self) -> f64 {
         match self {
@@ -117,6 +129,8 @@ impl Pcf {
             Self::Hardware2x2 => 1.0,
             Self::Box3x3 => 2.0,
             Self::Box5x5 => 3.0,
+            Self::Box7x7 | Self::Disc => 4.0,
+            Self::Pcss => MOST_SOFT + 1.0,
         }
     }
 
@@ -125,8 +139,33 @@ impl Pcf {
     pub const fn tap_reach(self) -> f64 {
         match self {
             Self::Point => 0.5,
-            Self::Hardware2x2 | Self::Box3x3 | Self::Box5x5 => 1.0,
+            Self::Hardware2x2 | Self::Box3x3 | Self::Box5x5 | Self::Box7x7 | Self::Disc | Self::Pcss => 1.0,
         }
+    }
+
+    /// Texture samples of one lookup, at most.
+    #[must_use]
+    pub const fn samples(self) -> u32 {
+        match self {
+            Self::Point | Self::Hardware2x2 => 1,
+            Self::Box3x3 => 4,
+            Self::Box5x5 => 9,
+            Self::Disc => 12,
+            Self::Box7x7 | Self::Pcss => 16,
+        }
+    }
+
+    /// Whether its taps lie on a disc that noise may turn: the text has `antumbra_visibility_noisy`.
+    #[must_use]
+    pub const fn is_disc(self) -> bool {
+        matches!(self, Self::Disc | Self::Pcss)
+    }
+
+    /// Whether depths are read as they are, besides being compared with: there is no GLSL for it, whose textures of
+    /// depths are for one of the two.
+    #[must_use]
+    pub const fn reads_depths(self) -> bool {
+        matches!(self, Self::Pcss)
     }
 
     /// Name in reports.
@@ -137,9 +176,16 @@ impl Pcf {
             Self::Hardware2x2 => "pcf2x2",
             Self::Box3x3 => "pcf3x3",
             Self::Box5x5 => "pcf5x5",
+            Self::Box7x7 => "pcf7x7",
+            Self::Disc => "disc",
+            Self::Pcss => "pcss",
         }
     }
 }
+
+/// Largest radius of the disc of [`Pcf::Pcss`], texels. More would show the grain of 16 taps and take a wider border from
+/// every map; less would make distant shadows no softer than boxes do.
+pub(crate) const MOST_SOFT: f64 = 16.0;
 
 /// Everything one light needs for one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -333,7 +379,9 @@ pub struct ViewUniforms {
     pub domain: [f32; 4],
     /// Maps of moments with mips: texels of the map over a pixel at a render-space position, where w is 1: a row.
     pub pixel_from_render: [f32; 4],
-    /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z, w: 0.
+    /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. Maps of depths
+    /// with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth between
+    /// caster and receiver. y: radius of the widest penumbra, texels. z, w: 0.
     pub moments: [f32; 4],
 }
 

@@ -24,6 +24,8 @@ pub enum Part {
     Warp(u8),
     /// Texels of a view.
     Texels(u8),
+    /// Width of the penumbras of a view.
+    Penumbra(u8),
 }
 
 /// Why it was left out.
@@ -112,6 +114,11 @@ pub enum Why {
         /// Standard deviation of depths that the format makes, share of the map's depth range.
         depth: f64,
     },
+    /// The filter reaches no farther: casters that are farther from their receivers have penumbras as wide as this.
+    PenumbraTooWide {
+        /// Distance between caster and receiver up to which penumbras are as wide as they should be, world units.
+        apart: f64,
+    },
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
     /// The published strength is predicted to be worse than no warp.
@@ -152,6 +159,7 @@ impl fmt::Display for Part {
             Self::Border(index) => write!(f, "view {index}, border"),
             Self::Warp(index) => write!(f, "view {index}, warp"),
             Self::Texels(index) => write!(f, "view {index}, texels"),
+            Self::Penumbra(index) => write!(f, "view {index}, penumbra"),
         }
     }
 }
@@ -191,6 +199,9 @@ impl fmt::Display for Why {
             Self::TexelsElsewhere { side } => write!(f, "a side of {side}: the rest is worth more in other maps"),
             Self::FormatLoses { depth } => {
                 write!(f, "the format loses {:.1} % of the depth range: near contacts leak", 100.0 * depth)
+            }
+            Self::PenumbraTooWide { apart } => {
+                write!(f, "no wider than that of casters {apart:.3} from their receivers")
             }
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }

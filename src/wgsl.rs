@@ -12,7 +12,16 @@
 //! at, `view_depth` the eye depth (read by techniques with several maps that are told apart by depth). The value is the
 //! share of light that arrives.
 //!
-//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]) and engines that want the cheapest
+//! Filters whose taps lie on a disc ([`Pcf::Disc`], [`Pcf::Pcss`]) have as well
+//!
+//! ```wgsl
+//! fn antumbra_visibility_noisy(position: vec3f, normal: vec3f, view_depth: f32, noise: f32) -> f32
+//! ```
+//!
+//! which turns the disc by `noise` of a whole turn, 0 to 1 (interleaved gradient noise of the pixel, say), so that bands
+//! become grain; `antumbra_visibility` is that with a noise of 0.
+//!
+//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), all other filters, and engines that want the cheapest
 //! fragments:
 //!
 //! ```wgsl
@@ -21,14 +30,15 @@
 //! ```
 //!
 //! `AntumbraLookup` has the members `uv: vec2f`, `depth: f32` and `slope: vec2f`, in this order; carry `uv` and `depth`
-//! from stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`] and [`Pcf::Box5x5`]
-//! (the other filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
+//! from stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`],
+//! [`Pcf::Box5x5`] and [`Pcf::Box7x7`] (the other filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
 //!
 //! Kind of promise: exact, up to rounding, where all vertices of a triangle are given one normal, because all members
 //! are then linear in position (`slope` is constant). With smooth normals the bias is interpolated: near enough on
 //! triangles that are small beside the curvature, too little across large ones, where acne may show; those take
 //! `antumbra_visibility`. Choose the side that is looked at from the eye position; all vertices of a face then agree.
 
+mod disc;
 mod moments;
 
 use core::fmt::Write as _;
@@ -56,8 +66,8 @@ const MAX_FRAGMENTS: usize = 20;
 
 /// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
 ///
-/// The texts live in the binary: no allocation for one map of depths. For several, and for maps of moments, the texts
-/// that name the texture and its sampler are made anew.
+/// The texts live in the binary: no allocation for one map of depths and filters without a disc. For others, the texts
+/// that name the texture and its sampler, or hand noise on, are made anew.
 #[must_use]
 pub fn library(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
     let is_plain = texture(key) == "texture_depth_2d";
@@ -110,12 +120,14 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
     } else {
         push(include_str!("../shaders/uniforms_one.wgsl"));
     }
-    push(match (key.texel, is_arrayed(key)) {
+    let map = match (key.texel, is_arrayed(key)) {
         (Texel::Depth, false) => include_str!("../shaders/map_one.wgsl"),
         (Texel::Depth, true) => include_str!("../shaders/map_many.wgsl"),
         (Texel::Moments(_), false) => include_str!("../shaders/map_one_moments.wgsl"),
         (Texel::Moments(_), true) => include_str!("../shaders/map_many_moments.wgsl"),
-    });
+    };
+    fragments.extend(disc::map(key, map));
+    let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
     push(CASTER);
     // Where a receiver is looked up.
     match key.shape {
@@ -128,33 +140,49 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
     }
     // What is read there.
     match key.texel {
-        Texel::Depth => pcf(key.filter).into_iter().for_each(&mut push),
+        Texel::Depth => pcf(key).into_iter().for_each(&mut push),
         Texel::Moments(moments) => fragments.extend(moments::read(moments, is_arrayed(key))),
     }
     fragments.extend(look(key).into_iter().map(Cow::Borrowed));
-    fragments.push(Cow::Borrowed(if is_arrayed(key) {
+    let visible = if is_arrayed(key) {
         include_str!("../shaders/visibility_many.wgsl")
     } else {
         include_str!("../shaders/visibility_one.wgsl")
-    }));
+    };
+    fragments.extend(disc::noisy(key, visible, disc::VISIBLE_STEADY));
     fragments
 }
 
 /// How depths are compared.
-fn pcf(filter: Pcf) -> ArrayVec<&'static str, 2> {
+fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
     const TAP: &str = include_str!("../shaders/pcf_tap.wgsl");
-    match filter {
-        Pcf::Point => [include_str!("../shaders/pcf_point.wgsl")].into_iter().collect(),
-        Pcf::Hardware2x2 => [include_str!("../shaders/pcf_hardware.wgsl")].into_iter().collect(),
-        Pcf::Box3x3 => [TAP, include_str!("../shaders/pcf_box_three.wgsl")].into(),
-        Pcf::Box5x5 => [TAP, include_str!("../shaders/pcf_box_five.wgsl")].into(),
+    let mut fragments: ArrayVec<_, 5> = match key.filter {
+        Pcf::Point => core::iter::once(include_str!("../shaders/pcf_point.wgsl")).collect(),
+        Pcf::Hardware2x2 => core::iter::once(include_str!("../shaders/pcf_hardware.wgsl")).collect(),
+        Pcf::Box3x3 => [TAP, include_str!("../shaders/pcf_box_three.wgsl")].into_iter().collect(),
+        Pcf::Box5x5 => [TAP, include_str!("../shaders/pcf_box_five.wgsl")].into_iter().collect(),
+        Pcf::Box7x7 => [TAP, include_str!("../shaders/pcf_box_seven.wgsl")].into_iter().collect(),
+        Pcf::Disc => [TAP, disc::POINTS, include_str!("../shaders/pcf_disc.wgsl")].into_iter().collect(),
+        Pcf::Pcss => {
+            let depth = match is_arrayed(key) {
+                true => include_str!("../shaders/depth_many.wgsl"),
+                false => include_str!("../shaders/depth_one.wgsl"),
+            };
+            [TAP, disc::POINTS, depth, include_str!("../shaders/pcf_soft.wgsl")].into_iter().collect()
+        }
+    };
+    // Stored depths are as linear as the law says.
+    if key.filter.reads_depths() && key.shape == MapShape::Affine {
+        fragments.push(include_str!("../shaders/law_linear.wgsl"));
     }
+    fragments
 }
 
 /// Where a receiver is looked up, its bias applied.
 fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
     let Texel::Moments(moments) = key.texel else {
         return core::iter::once(match key.shape {
+            _ if key.filter.is_disc() => disc::look(key.shape),
             MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
             MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
         })
@@ -237,7 +265,7 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
     );
     for part in calls(key) {
         text.push('\n');
-        text.push_str(part);
+        text.push_str(&part);
     }
     if key.has_two_stages() {
         text.push_str(TWO_STAGES);
@@ -255,12 +283,12 @@ pub fn prefilter(moments: Moments) -> String {
 }
 
 /// What an engine calls, and how it finds its map.
-fn calls(key: WgslKey) -> ArrayVec<&'static str, 2> {
+fn calls(key: WgslKey) -> ArrayVec<Cow<'static, str>, 3> {
     const INDEX: &str = include_str!("../shaders/select_index.wgsl");
     const ROOM: &str = include_str!("../shaders/select_room.wgsl");
     let mut calls = ArrayVec::new();
     if key.maps <= 1 {
-        calls.push(ONE_MAP);
+        calls.extend(disc::noisy(key, ONE_MAP, disc::VISIBILITY_STEADY));
         return calls;
     }
     let (how, call) = match (key.select, key.blend) {
@@ -269,8 +297,8 @@ fn calls(key: WgslKey) -> ArrayVec<&'static str, 2> {
         (Select::Finest, false) => (ROOM, include_str!("../shaders/select_finest.wgsl")),
         (Select::Finest, true) => (ROOM, include_str!("../shaders/select_finest_blend.wgsl")),
     };
-    calls.push(how);
-    calls.push(call);
+    calls.push(how.into());
+    calls.extend(disc::noisy(key, call, disc::VISIBILITY_STEADY));
     calls
 }
 
@@ -292,6 +320,6 @@ impl WgslKey {
     /// Whether its text has the lookup in two stages, `antumbra_place` and `antumbra_lit`.
     #[must_use]
     pub fn has_two_stages(self) -> bool {
-        self.maps == 1 && self.shape == MapShape::Affine && self.texel == Texel::Depth
+        self.maps == 1 && self.shape == MapShape::Affine && self.texel == Texel::Depth && !self.filter.is_disc()
     }
 }

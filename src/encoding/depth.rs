@@ -1,5 +1,5 @@
-//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `look_*.wgsl`, `pcf_*.wgsl`,
-//! `visibility_one.wgsl` and `caster.wgsl`.
+//! Depth maps: the Rust twins of `shaders/lookup.wgsl`, `lookup_projective.wgsl`, `look_*.wgsl`, `visibility_one.wgsl`
+//! and `caster.wgsl`.
 //!
 //! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation; `tests/twins`
 //! holds them together on an adapter. The software renderer of the lab runs on them.
@@ -10,8 +10,10 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
+pub use super::pcf::{antumbra_box_row, antumbra_filter, antumbra_tap};
 use super::read::antumbra_filtered;
-use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
+use super::spread::{Spread, antumbra_spread};
+use crate::frame::{MapShape, ViewUniforms, WgslKey};
 
 /// A depth map that can be compared with, as a comparison sampler does it.
 pub trait CompareMap {
@@ -19,6 +21,11 @@ pub trait CompareMap {
     fn size(&self) -> UVec2;
     /// Bilinear share of the four texels around `uv` whose depth is at least `depth`; coordinates clamp to the edge.
     fn sample_compare(&self, uv: Vec2, depth: f32) -> f32;
+    /// The depth in a texel, by its number along u and v; beyond the map it is that at its rim. Maps of moments have none.
+    fn depth(&self, texel: Vec2) -> f32 {
+        let _ = texel;
+        1.0
+    }
     /// What is stored around `uv` at a level of the mip chain, interpolated; of a series, the `pair`th two terms. Maps of
     /// depths store none.
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
@@ -46,17 +53,17 @@ impl CompareMap for DepthMap<'_> {
         let base = at.floor();
         // Samplers keep eight bits of the fraction.
         let fraction = ((at - base) * SUB_TEXELS).round() / SUB_TEXELS;
-        let last = self.size.as_vec2() - 1.0;
-        let lit = |dx: f32, dy: f32| {
-            // Clamped before it is narrowed: hostile coordinates do not fit an integer.
-            let texel = (base + Vec2::new(dx, dy)).clamp(Vec2::ZERO, last).as_uvec2();
-            let stored = self.depth[(texel.y * self.size.x + texel.x) as usize];
-            if depth <= stored { 1.0 } else { 0.0 }
-        };
+        let lit = |dx: f32, dy: f32| if depth <= self.depth(base + Vec2::new(dx, dy)) { 1.0 } else { 0.0 };
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let above = mix(lit(0.0, 0.0), lit(1.0, 0.0), fraction.x);
         let below = mix(lit(0.0, 1.0), lit(1.0, 1.0), fraction.x);
         mix(above, below, fraction.y)
+    }
+
+    fn depth(&self, texel: Vec2) -> f32 {
+        // Clamped before it is narrowed: hostile coordinates do not fit an integer.
+        let texel = texel.clamp(Vec2::ZERO, self.size.as_vec2() - 1.0).as_uvec2();
+        self.depth[(texel.y * self.size.x + texel.x) as usize]
     }
 }
 
@@ -72,6 +79,8 @@ pub struct Lookup {
     pub depth: f32,
     /// Change of that depth over one texel step in u and in v, along the receiver's plane.
     pub slope: Vec2,
+    /// How taps are spread around it, for filters whose taps lie on a disc; others do not read it.
+    pub spread: Spread,
 }
 
 /// Twin of `antumbra_lookup`.
@@ -94,6 +103,7 @@ pub fn antumbra_lookup(view: &ViewUniforms, position: Vec3, normal: Vec3, reach:
         uv: Vec2::new(u.dot(at), v.dot(at)) + climb * along_normal,
         depth: depth.dot(at) - lift,
         slope: fall * depth_per_fall,
+        spread: Spread::default(),
     }
 }
 
@@ -154,76 +164,44 @@ pub fn antumbra_lookup_projective(
         uv: uv + shift * texel,
         depth: if inside { (depth.dot(at) - lift) * law } else { -1.0 },
         slope: fall * depth_per_fall * law,
+        spread: Spread::default(),
     }
-}
-
-/// Twin of `antumbra_tap`: one bilinear comparison at `offset` texels, against the receiver's own plane there.
-#[must_use]
-pub fn antumbra_tap(map: &impl CompareMap, look: &Lookup, offset: Vec2) -> f32 {
-    let uv = look.uv + offset / map.size().as_vec2();
-    map.sample_compare(uv, (look.depth + look.slope.dot(offset)).min(1.0))
-}
-
-/// Twin of `antumbra_filter`, for every filter.
-#[must_use]
-pub fn antumbra_filter(filter: Pcf, map: &impl CompareMap, look: &Lookup) -> f32 {
-    let size = map.size().as_vec2();
-    match filter {
-        Pcf::Point => map.sample_compare(((look.uv * size).floor() + 0.5) / size, look.depth.min(1.0)),
-        Pcf::Hardware2x2 => map.sample_compare(look.uv, look.depth.min(1.0)),
-        Pcf::Box3x3 => {
-            let f = fraction(look.uv, size);
-            let first = 1.0 / (2.0 - f) - 1.0 - f;
-            let last = f / (1.0 + f) + 1.0 - f;
-            let lower = antumbra_tap(map, look, first) * (2.0 - f.x)
-                + antumbra_tap(map, look, Vec2::new(last.x, first.y)) * (1.0 + f.x);
-            let upper = antumbra_tap(map, look, Vec2::new(first.x, last.y)) * (2.0 - f.x)
-                + antumbra_tap(map, look, last) * (1.0 + f.x);
-            (lower * (2.0 - f.y) + upper * (1.0 + f.y)) / 9.0
-        }
-        Pcf::Box5x5 => {
-            let f = fraction(look.uv, size);
-            let first = 1.0 / (2.0 - f) - 2.0 - f;
-            let middle = 0.5 - f;
-            let last = f / (1.0 + f) + 2.0 - f;
-            let x = Vec3::new(first.x, middle.x, last.x);
-            let weight = Vec3::new(2.0 - f.x, 2.0, 1.0 + f.x);
-            (antumbra_box_row(map, look, x, weight, first.y) * (2.0 - f.y)
-                + antumbra_box_row(map, look, x, weight, middle.y) * 2.0
-                + antumbra_box_row(map, look, x, weight, last.y) * (1.0 + f.y))
-                / 25.0
-        }
-    }
-}
-
-/// Twin of `antumbra_box_row`: three taps of a row.
-#[must_use]
-pub fn antumbra_box_row(map: &impl CompareMap, look: &Lookup, x: Vec3, weight: Vec3, y: f32) -> f32 {
-    antumbra_tap(map, look, Vec2::new(x.x, y)) * weight.x
-        + antumbra_tap(map, look, Vec2::new(x.y, y)) * weight.y
-        + antumbra_tap(map, look, Vec2::new(x.z, y)) * weight.z
 }
 
 /// Twin of `antumbra_visible`: share of the light that reaches a point of render space.
 #[must_use]
 pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap, position: Vec3, normal: Vec3) -> f32 {
-    antumbra_filtered(key, view, map, &antumbra_look(key, view, position, normal), position)
+    antumbra_visible_noisy(key, view, map, position, normal, 0.0)
+}
+
+/// Twin of `antumbra_visible_noisy`: the same by a filter whose disc is turned by `noise`, 0 to 1.
+#[must_use]
+pub fn antumbra_visible_noisy(
+    key: WgslKey,
+    view: &ViewUniforms,
+    map: &impl CompareMap,
+    position: Vec3,
+    normal: Vec3,
+    noise: f32,
+) -> f32 {
+    antumbra_filtered(key, view, map, &antumbra_look_noisy(key, view, position, normal, noise), position)
 }
 
 /// Twin of `antumbra_look`: where a receiver is looked up in a view, its bias applied.
 #[must_use]
 pub fn antumbra_look(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Lookup {
-    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
-    match key.shape {
-        MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
-        shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
-    }
+    antumbra_look_noisy(key, view, position, normal, 0.0)
 }
 
-/// Place of a point between texel centres.
-fn fraction(uv: Vec2, size: Vec2) -> Vec2 {
-    let at = uv * size - 0.5;
-    at - at.floor()
+/// Twin of `antumbra_look_noisy`: the same for a filter whose disc is turned by `noise`, 0 to 1.
+#[must_use]
+pub fn antumbra_look_noisy(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Lookup {
+    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
+    let look = match key.shape {
+        MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
+        shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
+    };
+    Lookup { spread: antumbra_spread(key, view, position, noise), ..look }
 }
 
 /// Twin of `antumbra_caster_depth`.
@@ -236,37 +214,4 @@ pub fn antumbra_caster_depth(depth_from_render: Vec4, position: Vec3) -> f32 {
 #[must_use]
 pub fn antumbra_caster(clip_from_render: glam::Mat4, position: Vec3) -> Vec4 {
     clip_from_render * position.extend(1.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// A map whose left half is near and right half far.
-    fn half_map(depth: &mut Vec<f32>) -> DepthMap<'_> {
-        depth.clear();
-        depth.extend((0..16 * 16).map(|i| if i % 16 < 8 { 0.25 } else { 0.75 }));
-        DepthMap { size: UVec2::splat(16), depth }
-    }
-
-    proptest! {
-        /// Each filter is a mean: within [0, 1], 1 for receivers in front of everything, 0 behind everything, and
-        /// across a straight edge it is the box's overlap with the lit half.
-        #[test]
-        fn filters_average(u in 0.3..0.7_f32, v in 0.3..0.7_f32, index in 0..4_usize) {
-            let filter = Pcf::ALL[index];
-            let mut depth = Vec::new();
-            let map = half_map(&mut depth);
-            let at = |depth| antumbra_filter(filter, &map, &Lookup { uv: Vec2::new(u, v), depth, slope: Vec2::ZERO });
-            prop_assert!((at(0.1) - 1.0).abs() < 1e-5);
-            prop_assert!(at(0.9).abs() < 1e-5);
-            let width = match filter { Pcf::Point => 1e-6, Pcf::Hardware2x2 => 1.0, Pcf::Box3x3 => 3.0, Pcf::Box5x5 => 5.0 };
-            let expected = ((u * 16.0 - 8.0) / width + 0.5).clamp(0.0, 1.0);
-            // Samplers keep 8 bits of the position between texels.
-            if filter != Pcf::Point || (u * 16.0 - 8.0).abs() > 1e-3 {
-                prop_assert!((at(0.5) - expected).abs() < 0.01, "{} {}", at(0.5), expected);
-            }
-        }
-    }
 }

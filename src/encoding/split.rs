@@ -10,7 +10,7 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
-use super::depth::{CompareMap, Lookup, antumbra_look, antumbra_visible};
+use super::depth::{CompareMap, Lookup, antumbra_look_noisy, antumbra_visible_noisy};
 use super::read::antumbra_filtered;
 use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
 
@@ -44,6 +44,12 @@ impl<M: CompareMap> CompareMap for OnMap<'_, M> {
         self.layer.sample_compare(uv.max(self.low).min(self.high), depth)
     }
 
+    fn depth(&self, texel: Vec2) -> f32 {
+        let size = self.size().as_vec2();
+        let (low, high) = ((self.low * size).floor().max(Vec2::ZERO), (self.high * size).floor().min(size - 1.0));
+        self.layer.depth(texel.max(low).min(high))
+    }
+
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
         let rim = antumbra_rim(self.size(), level);
         self.layer.stored(uv.max(self.low + rim).min(self.high - rim), level, pair)
@@ -68,17 +74,31 @@ pub fn antumbra_visibility<M: CompareMap>(
     normal: Vec3,
     view_depth: f32,
 ) -> f32 {
+    antumbra_visibility_noisy(key, uniforms, layers, position, normal, view_depth, 0.0)
+}
+
+/// Twin of `antumbra_visibility_noisy`: the same by a filter whose disc is turned by `noise`, 0 to 1.
+#[must_use]
+pub fn antumbra_visibility_noisy<M: CompareMap>(
+    key: WgslKey,
+    uniforms: &ShadowUniforms,
+    layers: &[M],
+    position: Vec3,
+    normal: Vec3,
+    view_depth: f32,
+    noise: f32,
+) -> f32 {
     let last = usize::from(key.maps).clamp(1, MAX_VIEWS) - 1;
     if last == 0 {
-        let visible = |map| antumbra_visible(key, &uniforms.views[0], map, position, normal);
+        let visible = |map| antumbra_visible_noisy(key, &uniforms.views[0], map, position, normal, noise);
         return layers.first().map_or(1.0, visible);
     }
     if key.select == Select::Finest {
-        return finest(key, uniforms, layers, last, position, normal, view_depth);
+        return finest(key, uniforms, layers, last, &Receiver { position, normal, view_depth, noise });
     }
     let visible = |index: usize| {
         let view = &uniforms.views[index];
-        OnMap::of(view, layers).map_or(1.0, |map| antumbra_visible(key, view, &map, position, normal))
+        OnMap::of(view, layers).map_or(1.0, |map| antumbra_visible_noisy(key, view, &map, position, normal, noise))
     };
     let index = antumbra_index(uniforms, last, view_depth);
     let lit = visible(index);
@@ -107,19 +127,25 @@ pub fn antumbra_room(view: &ViewUniforms, look: &Lookup) -> f32 {
     if look.depth <= 1.0 - view.domain[2].min(0.0) { room.x.min(room.y) } else { -1.0 }
 }
 
+/// What is looked up.
+struct Receiver {
+    position: Vec3,
+    normal: Vec3,
+    view_depth: f32,
+    noise: f32,
+}
+
 /// The loop over maps of `select_finest*.wgsl`.
 fn finest<M: CompareMap>(
     key: WgslKey,
     uniforms: &ShadowUniforms,
     layers: &[M],
     last: usize,
-    position: Vec3,
-    normal: Vec3,
-    view_depth: f32,
+    &Receiver { position, normal, view_depth, noise }: &Receiver,
 ) -> f32 {
     let (mut lit, mut rest) = (0.0, 1.0);
     for view in &uniforms.views[..=last] {
-        let look = antumbra_look(key, view, position, normal);
+        let look = antumbra_look_noisy(key, view, position, normal, noise);
         let room = antumbra_room(view, &look);
         if room < 0.0 {
             continue;

@@ -3,6 +3,7 @@
 //! # References
 //! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987: compare, then average.
 //! - Donnelly & Lauritzen, *Variance shadow maps*, 2006: average, then compare.
+//! - Fernando, *Percentage-closer soft shadows*, 2005: search for casters, then filter as wide as their penumbras.
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
 use crate::error::{FitError, finite};
@@ -17,7 +18,21 @@ pub enum Encoding {
     Depth(Pcf),
     /// Moments of linear light depth, blurred before they are read.
     Moments(Prefilter),
+    /// Linear light depth, filtered by as much as the light is wide: penumbras of the width that they have, up to the
+    /// filter's reach ([`Pcf::Pcss`]).
+    Soft {
+        /// Angle from one rim of the light to the other as receivers see it, radians, 0 to 0.5. That of the sun is
+        /// [`SUN_ANGLE`].
+        angle: f32,
+    },
 }
+
+/// Angular diameter of the sun and of the moon, radians: 32 minutes of arc. [`Pcf::Pcss`] without an angle has it.
+pub const SUN_ANGLE: f32 = 0.0093;
+
+/// Largest angle of a light, radians: it would fill a quarter of the sky's width, and penumbras would reach for a quarter of
+/// their casters' distance to either side, farther than any border.
+const WIDEST_LIGHT: f64 = 0.5;
 
 impl Default for Encoding {
     fn default() -> Self {
@@ -81,15 +96,29 @@ impl Encoding {
         match self {
             Self::Depth(filter) => (Texel::Depth, *filter),
             Self::Moments(prefilter) => (Texel::Moments(prefilter.moments), Pcf::Hardware2x2),
+            Self::Soft { .. } => (Texel::Depth, Pcf::Pcss),
+        }
+    }
+
+    /// Angular diameter of the light, radians, for filters that need it.
+    pub(crate) const fn angle(&self) -> Option<f32> {
+        match self {
+            Self::Soft { angle } => Some(*angle),
+            Self::Depth(Pcf::Pcss) => Some(SUN_ANGLE),
+            Self::Depth(_) | Self::Moments(_) => None,
         }
     }
 
     /// Checks its numbers.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
-        let Self::Moments(prefilter) = self else { return Ok(()) };
         let within = |field, value: f32, high: f64, legal| {
             let value = finite(field, f64::from(value))?;
             if (0.0..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
+        };
+        let prefilter = match self {
+            Self::Depth(_) => return Ok(()),
+            Self::Soft { angle } => return within("encoding.angle", *angle, WIDEST_LIGHT, "0 to 0.5"),
+            Self::Moments(prefilter) => prefilter,
         };
         within("encoding.dark", prefilter.dark, MOST_DARK, "0 to 0.9")?;
         match prefilter.radius {

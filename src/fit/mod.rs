@@ -9,4 +9,5 @@ pub(crate) mod layout;
 pub(crate) mod share;
 pub(crate) mod slices;
 pub(crate) mod snap;
+pub(crate) mod soft;
 pub(crate) mod view;

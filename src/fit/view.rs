@@ -92,6 +92,12 @@ impl Texels {
         (self.border < self.wanted).then_some(Why::MapTooSmall { border: self.border, wanted: self.wanted })
     }
 
+    /// Texels from a receiver to the farthest one that a filter may read without reading outside: what
+    /// [`with`](Self::with) takes a border for.
+    pub(crate) fn widest_reach(&self) -> f64 {
+        f64::from(self.border.saturating_sub(2 + self.kernel)) / (1.0 + core::f64::consts::SQRT_2)
+    }
+
     /// What a filter reads beyond a receiver, and one texel more.
     pub(crate) fn read_beyond(&self) -> f64 {
         self.filter.reach() + 1.0
@@ -143,12 +149,15 @@ impl Fitter<'_> {
         let bias = self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render);
         self.bias.write(&bias, &mut uniforms);
         let blur = match self.encoding {
-            Encoding::Depth(_) => BlurUniforms::default(),
+            Encoding::Depth(_) | Encoding::Soft { .. } => BlurUniforms::default(),
             Encoding::Moments(prefilter) => {
                 let placed = Placed { rows: &rows, across: bias.across().0, light, texel: bias.texel };
                 self.blur(&prefilter, &placed, texels, &mut uniforms)
             }
         };
+        if let Some(angle) = self.encoding.angle() {
+            self.penumbra(angle, bias.texel, bias.depth_range, &mut uniforms, frame);
+        }
         let squares = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length_squared);
         let same = window.bend.is_none().then(|| (texel * texel).to_array());
         let mut extremes =

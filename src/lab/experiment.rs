@@ -14,7 +14,7 @@ use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::error::FitError;
 use crate::fit::share::Share;
 use crate::fit::snap::Stabilise;
-use crate::frame::{Select, ShadowFrame, WgslKey};
+use crate::frame::{Pcf, Select, ShadowFrame, WgslKey};
 use crate::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use crate::remix::Remix;
 use crate::scene::MapBudget;
@@ -305,6 +305,7 @@ impl Shot {
 pub fn stage_names(remix: &Remix) -> [String; 3] {
     let encoding = match remix.encoding {
         Encoding::Depth(filter) => format!("depth {}", filter.name()),
+        Encoding::Soft { angle } => format!("depth {}, {angle} rad", Pcf::Pcss.name()),
         Encoding::Moments(prefilter) => moments_name(&prefilter),
     };
     let warp = match remix.warp {

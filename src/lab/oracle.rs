@@ -267,9 +267,12 @@ impl Taps {
     fn of(filter: Pcf, at: f64) -> Self {
         let width = match filter {
             Pcf::Point => return Self { first: at.floor() as i64, ends: [1.0, 0.0], count: 1, between: 0.0 },
-            Pcf::Hardware2x2 => 1,
+            // The ideal light is a point.
+            Pcf::Hardware2x2 | Pcf::Pcss => 1,
             Pcf::Box3x3 => 3,
-            Pcf::Box5x5 => 5,
+            // A disc spreads as far as the box that has its variance: a radius of three is a side of 3√3.
+            Pcf::Box5x5 | Pcf::Disc => 5,
+            Pcf::Box7x7 => 7,
         };
         let base = (at - 0.5).floor();
         let part = at - 0.5 - base;

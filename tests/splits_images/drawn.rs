@@ -58,6 +58,10 @@ impl CompareMap for Layer {
     fn sample_compare(&self, uv: Vec2, depth: f32) -> f32 {
         DepthMap { size: self.size(), depth: &self.depth }.sample_compare(uv, depth)
     }
+
+    fn depth(&self, texel: Vec2) -> f32 {
+        DepthMap { size: self.size(), depth: &self.depth }.depth(texel)
+    }
 }
 
 fn draw(subject: &Subject, frame: &ShadowFrame, view: &ShadowView, origin: DVec3) -> Vec<f32> {

@@ -1,0 +1,60 @@
+//! The fragments of filters whose taps lie on a disc, and how the noise that turns it gets there.
+
+use std::borrow::Cow;
+
+use arrayvec::ArrayVec;
+
+use crate::frame::{MapShape, Pcf, WgslKey};
+use crate::texel::Texel;
+
+/// The points of a disc.
+pub(super) const POINTS: &str = include_str!("../../shaders/disc.wgsl");
+
+/// `antumbra_visible` without noise.
+pub(super) const VISIBLE_STEADY: &str = include_str!("../../shaders/visible_steady.wgsl");
+
+/// `antumbra_visibility` without noise.
+pub(super) const VISIBILITY_STEADY: &str = include_str!("../../shaders/visibility_steady.wgsl");
+
+fn is_disc(key: WgslKey) -> bool {
+    key.texel == Texel::Depth && key.filter.is_disc()
+}
+
+/// The text of a lookup's struct, with a member that says how taps are spread for filters that have a disc.
+pub(super) fn map(key: WgslKey, text: &'static str) -> ArrayVec<Cow<'static, str>, 2> {
+    const SLOPE: &str = "    slope: vec2f,\n";
+    const SPREAD: &str = "    slope: vec2f,\n    // How taps are spread around it.\n    spread: AntumbraSpread,\n";
+    if !is_disc(key) {
+        return core::iter::once(text.into()).collect();
+    }
+    let spread = match key.filter {
+        Pcf::Pcss => include_str!("../../shaders/spread_soft.wgsl"),
+        _ => include_str!("../../shaders/spread_disc.wgsl"),
+    };
+    [spread.into(), text.replacen(SLOPE, SPREAD, 1).into()].into()
+}
+
+/// Where a receiver is looked up, with a turn of the disc.
+pub(super) fn look(shape: MapShape) -> &'static str {
+    match shape {
+        MapShape::Affine => include_str!("../../shaders/look_affine_spread.wgsl"),
+        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../../shaders/look_projective_spread.wgsl"),
+    }
+}
+
+/// A text that hands positions and normals on; for filters with a disc the same with noise, and what calls it without.
+pub(super) fn noisy(key: WgslKey, text: &'static str, steady: &'static str) -> ArrayVec<Cow<'static, str>, 2> {
+    const WITH_NOISE: [(&str, &str); 6] = [
+        ("antumbra_look(", "antumbra_look_noisy("),
+        ("antumbra_visible(", "antumbra_visible_noisy("),
+        ("antumbra_visibility(", "antumbra_visibility_noisy("),
+        (", normal)", ", normal, noise)"),
+        ("normal: vec3f)", "normal: vec3f, noise: f32)"),
+        ("view_depth: f32)", "view_depth: f32, noise: f32)"),
+    ];
+    if !is_disc(key) {
+        return core::iter::once(text.into()).collect();
+    }
+    let text = WITH_NOISE.iter().fold(text.to_owned(), |text, (plain, noisy)| text.replace(plain, noisy));
+    [text.into(), steady.into()].into()
+}
