@@ -47,6 +47,9 @@ const ANTUMBRA_BLUR_BELL_REACH: f32 = 1.44;
 
 // Weight of a texel at an offset: its overlap with the box, or the height of the bell.
 fn antumbra_blur_weight(offset: f32, radius: f32, bell: bool) -> f32 {
-    let share = offset / max(radius, 0.5);
-    return select(clamp(radius + 0.5 - abs(offset), 0.0, 1.0), exp(-1.5 * share * share), bell);
+    if (bell) {
+        let share = offset / max(radius, 0.5);
+        return exp(-1.5 * share * share);
+    }
+    return clamp(radius + 0.5 - abs(offset), 0.0, 1.0);
 }

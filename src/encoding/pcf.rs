@@ -38,8 +38,8 @@ fn box_three(map: &impl CompareMap, look: &Lookup, f: Vec2) -> f32 {
     let last = f / (1.0 + f) + 1.0 - f;
     let lower = antumbra_tap(map, look, first) * (2.0 - f.x)
         + antumbra_tap(map, look, Vec2::new(last.x, first.y)) * (1.0 + f.x);
-    let upper = antumbra_tap(map, look, Vec2::new(first.x, last.y)) * (2.0 - f.x)
-        + antumbra_tap(map, look, last) * (1.0 + f.x);
+    let upper =
+        antumbra_tap(map, look, Vec2::new(first.x, last.y)) * (2.0 - f.x) + antumbra_tap(map, look, last) * (1.0 + f.x);
     (lower * (2.0 - f.y) + upper * (1.0 + f.y)) / 9.0
 }
 
