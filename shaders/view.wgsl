@@ -24,7 +24,8 @@ struct AntumbraView {
     // one, and one over the length of that band. By containment, in texture coordinates: what a filter reads beyond a
     // receiver, and one over the width of the band along the rim in which it gives way.
     domain: vec4f,
-    // Maps of moments: texels over a pixel where w is 1, a row; light that is taken for bleeding, last level.
+    // Maps of moments: texels over a pixel where w is 1, a row; light that is taken for bleeding, last level, lift for a
+    // wider texel of a level as a share of it.
     pixel_from_render: vec4f,
     moments: vec4f,
 }

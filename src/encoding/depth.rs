@@ -10,8 +10,9 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::read::antumbra_filtered;
+use super::read::{antumbra_filtered, antumbra_level};
 use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
+use crate::texel::Texel;
 
 /// A depth map that can be compared with, as a comparison sampler does it.
 pub trait CompareMap {
@@ -213,7 +214,11 @@ pub fn antumbra_visible(key: WgslKey, view: &ViewUniforms, map: &impl CompareMap
 /// Twin of `antumbra_look`: where a receiver is looked up in a view, its bias applied.
 #[must_use]
 pub fn antumbra_look(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Lookup {
-    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
+    let wider = match key.texel {
+        Texel::Moments(moments) => view.moments[2] * (antumbra_level(moments, view, position).exp2() - 1.0),
+        Texel::Depth => 0.0,
+    };
+    let (reach, tap_reach) = (key.filter.reach() as f32 + wider, key.filter.tap_reach() as f32 + wider);
     match key.shape {
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
         shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),

@@ -1,0 +1,6 @@
+//! What averaging moments costs: light where there is none, shadow where there is none, flicker.
+
+mod drawn;
+mod encodings;
+mod planes;
+mod stack;
