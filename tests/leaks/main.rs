@@ -3,4 +3,5 @@
 mod drawn;
 mod encodings;
 mod planes;
+mod section;
 mod stack;
