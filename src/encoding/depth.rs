@@ -11,9 +11,10 @@
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 pub use super::pcf::{antumbra_box_row, antumbra_filter, antumbra_tap};
-use super::read::antumbra_filtered;
+use super::read::{antumbra_filtered, antumbra_level};
 use super::spread::{Spread, antumbra_spread};
 use crate::frame::{MapShape, ViewUniforms, WgslKey};
+use crate::texel::Texel;
 
 /// A depth map that can be compared with, as a comparison sampler does it.
 pub trait CompareMap {
@@ -196,7 +197,11 @@ pub fn antumbra_look(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: 
 /// Twin of `antumbra_look_noisy`: the same for a filter whose disc is turned by `noise`, 0 to 1.
 #[must_use]
 pub fn antumbra_look_noisy(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Lookup {
-    let (reach, tap_reach) = (key.filter.reach() as f32, key.filter.tap_reach() as f32);
+    let wider = match key.texel {
+        Texel::Moments(moments) => view.moments[2] * (antumbra_level(moments, view, position).exp2() - 1.0),
+        Texel::Depth => 0.0,
+    };
+    let (reach, tap_reach) = (key.filter.reach() as f32 + wider, key.filter.tap_reach() as f32 + wider);
     let look = match key.shape {
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
         shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),

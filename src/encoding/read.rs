@@ -16,7 +16,10 @@ use super::moments::{
     antumbra_moments, antumbra_moments_lit, antumbra_moments_lit_within, antumbra_moments_packed,
     antumbra_moments_unpacked,
 };
-use super::variance::{antumbra_darkened, antumbra_variance_lit, antumbra_variance_moments};
+use super::variance::{
+    antumbra_darkened, antumbra_variance_lit, antumbra_variance_moments, antumbra_variance_packed,
+    antumbra_variance_unpacked,
+};
 use crate::frame::{ViewUniforms, WgslKey};
 use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
 
@@ -27,7 +30,12 @@ const ANTUMBRA_LEVEL_SMALLEST: f32 = 1e-6;
 #[must_use]
 pub fn antumbra_store(moments: Moments, depth: f32, first_term: u32) -> Vec4 {
     match moments.kind() {
-        MomentKind::Variance => antumbra_variance_moments(depth).extend(0.0).extend(0.0),
+        MomentKind::Variance => match moments.format() {
+            MomentFormat::Unorm16 => antumbra_variance_packed(antumbra_variance_moments(depth)),
+            _ => antumbra_variance_moments(depth),
+        }
+        .extend(0.0)
+        .extend(0.0),
         MomentKind::Exponential => Vec4::X * antumbra_exponential_moments(depth),
         MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
             antumbra_exponential_variance_moments(depth, moments.exponents().into())
@@ -47,11 +55,15 @@ pub fn antumbra_read(moments: Moments, stored: Vec4, depth: f32, slope: Vec2) ->
         MomentFormat::Unorm16 => antumbra_moments_unpacked(stored),
         _ => stored,
     };
+    let two = || match moments.format() {
+        MomentFormat::Unorm16 => antumbra_variance_unpacked(stored.xy()),
+        _ => stored.xy(),
+    };
     let exponents = moments.exponents().into();
     let blur = || moments.blur() + 0.5 * slope.length();
     match moments.kind() {
         MomentKind::Variance => {
-            antumbra_variance_lit(stored.xy(), depth, moments.variance_loss() + 0.25 * slope.dot(slope))
+            antumbra_variance_lit(two(), depth, moments.variance_loss() + 0.25 * slope.dot(slope))
         }
         MomentKind::Exponential => antumbra_exponential_lit(stored.x, depth, moments.exponent()),
         MomentKind::ExponentialVarianceTwo => {

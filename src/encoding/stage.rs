@@ -69,6 +69,9 @@ const LARGEST_RADIUS: f64 = 1e9;
 /// Most light that may be taken for bleeding: at 1 nothing would be lit.
 const MOST_DARK: f64 = 0.9;
 
+/// Standard deviation of what is spread evenly from −1 to 1: 1/√3.
+const DEVIATION: f64 = 0.577_350_269_189_625_8;
+
 impl Prefilter {
     /// Moments, averaged over three texels.
     #[must_use]
@@ -76,16 +79,30 @@ impl Prefilter {
         Self { moments, radius: Radius::Texels(1.5), bell: false, dark: 0.0 }
     }
 
-    /// How far receivers are lifted for the blur, as a share of its radius: where a slanted plane is averaged, some of
-    /// it lies before its middle. Two moments know that it is spread; four, and two of them bent, take the near part
-    /// for a caster.
+    /// How far receivers are lifted for the blur, as a share of its radius r, and of a texel of their mip level.
+    ///
+    /// Of a slanted plane that is averaged, half lies before the receiver at its middle. Depths are then as likely to
+    /// either side of their mean, which is the receiver's own, with the deviation σ = r a/√3 where they fall by a over a
+    /// texel. What that does:
+    /// - Variance, and the mean of an exponential: nothing. At the mean Chebyshev's bound is 1, and exponentials have a
+    ///   mean beyond it (Jensen).
+    /// - Series: nothing. It is odd about the step, and a half reads lit.
+    /// - Four moments: at the mean a share of 5/18 lies before the receiver for sure. None does from one deviation on:
+    ///   there the receiver is the lesser node of the two-point rule of Gauss, of which one root goes to infinity. Less
+    ///   is acne. The bounds of the range see a little further, and stay below a thousandth.
+    /// - Two exponentials: the negative one has its mean before the receiver's, for which ln(sinh(s)/s)/s of the radius
+    ///   makes up, s = 2 c⁻ a r. Half of it does up to s = 4: a quarter of the depth range under the blur. Less is acne
+    ///   on steep ground, more leaks at contacts.
+    ///
+    /// What a texel's own extent adds is within the texel that every receiver is lifted by. `tests/leaks` measures it.
     pub(crate) const fn lifted(&self) -> f64 {
         match self.moments.kind() {
-            MomentKind::Variance | MomentKind::Exponential | MomentKind::ExponentialVarianceTwo => 0.0,
-            MomentKind::Convolution
-            | MomentKind::ExponentialVarianceFour
-            | MomentKind::Hamburger
-            | MomentKind::Hausdorff => 1.0,
+            MomentKind::Variance
+            | MomentKind::Exponential
+            | MomentKind::ExponentialVarianceTwo
+            | MomentKind::Convolution => 0.0,
+            MomentKind::ExponentialVarianceFour => 0.5,
+            MomentKind::Hamburger | MomentKind::Hausdorff => DEVIATION,
         }
     }
 }

@@ -50,3 +50,15 @@ pub fn antumbra_variance_moments(depth: f32) -> Vec2 {
 pub fn antumbra_variance_lit(moments: Vec2, depth: f32, loss: f32) -> f32 {
     antumbra_chebyshev(moments, depth - 0.5, loss)
 }
+
+/// Twin of `antumbra_variance_packed`: two moments as integers keep them best, each 0 to 1.
+#[must_use]
+pub fn antumbra_variance_packed(moments: Vec2) -> Vec2 {
+    Vec2::new(moments.x + 0.5, 4.0 * moments.y)
+}
+
+/// Twin of `antumbra_variance_unpacked`: and back.
+#[must_use]
+pub fn antumbra_variance_unpacked(stored: Vec2) -> Vec2 {
+    Vec2::new(stored.x - 0.5, 0.25 * stored.y)
+}

@@ -112,7 +112,7 @@ impl Fitter<'_> {
         if last > 0 {
             uniforms.pixel_from_render = (pixel / pixels).as_vec4().to_array();
         }
-        uniforms.moments = [prefilter.dark, last as f32, 0.0, 0.0];
+        uniforms.moments = [prefilter.dark, last as f32, prefilter.lifted() as f32, 0.0];
     }
 
     /// Last level in which the tile is whole texels: beyond it they are shared with other maps.

@@ -20,6 +20,7 @@ pub mod scene;
 pub mod serving;
 pub mod shapes;
 pub mod sparse_city;
+pub mod stack;
 pub mod statistics;
 pub mod subject;
 pub mod tour;

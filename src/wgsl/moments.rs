@@ -47,11 +47,10 @@ fn lit(moments: Moments) -> ArrayVec<&'static str, 5> {
     let mut fragments = ArrayVec::new();
     let mut add = |texts: &[&'static str]| fragments.extend(texts.iter().copied());
     match moments.kind() {
-        MomentKind::Variance => add(&[
-            CHEBYSHEV,
-            include_str!("../../shaders/variance.wgsl"),
-            include_str!("../../shaders/read_variance.wgsl"),
-        ]),
+        MomentKind::Variance => {
+            add(&[CHEBYSHEV, include_str!("../../shaders/variance.wgsl")]);
+            add(two(moments));
+        }
         MomentKind::Exponential => {
             add(&[include_str!("../../shaders/exponential.wgsl"), include_str!("../../shaders/read_exponential.wgsl")]);
         }
@@ -76,6 +75,17 @@ fn lit(moments: Moments) -> ArrayVec<&'static str, 5> {
         }
     }
     fragments
+}
+
+/// How two moments are unpacked and read.
+fn two(moments: Moments) -> &'static [&'static str] {
+    match moments.format() {
+        MomentFormat::Unorm16 => &[
+            include_str!("../../shaders/variance_unpacked.wgsl"),
+            include_str!("../../shaders/read_variance_sixteen.wgsl"),
+        ],
+        _ => &[include_str!("../../shaders/read_variance.wgsl")],
+    }
 }
 
 /// What four moments need beyond roots and least shares.

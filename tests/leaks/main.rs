@@ -1,0 +1,7 @@
+//! What averaging moments costs: light where there is none, shadow where there is none, flicker.
+
+mod drawn;
+mod encodings;
+mod planes;
+mod section;
+mod stack;
