@@ -1,4 +1,5 @@
-//! Two moments of depth: the Rust twins of `shaders/chebyshev.wgsl` and `variance.wgsl`.
+//! Two moments of depth: the Rust twins of `shaders/chebyshev.wgsl`, `variance.wgsl` and
+//! `variance_sixteen.wgsl`.
 //!
 //! ```text
 //! (1)  μ = M₁,  σ² = max(M₂ − M₁², 0) + loss
@@ -49,4 +50,16 @@ pub fn antumbra_variance_moments(depth: f32) -> Vec2 {
 #[must_use]
 pub fn antumbra_variance_lit(moments: Vec2, depth: f32, loss: f32) -> f32 {
     antumbra_chebyshev(moments, depth - 0.5, loss)
+}
+
+/// Twin of `antumbra_variance_packed`: both moments, each 0 to 1, for 16 bits.
+#[must_use]
+pub fn antumbra_variance_packed(moments: Vec2) -> Vec2 {
+    Vec2::new(moments.x + 0.5, 4.0 * moments.y)
+}
+
+/// Twin of `antumbra_variance_unpacked`: and back.
+#[must_use]
+pub fn antumbra_variance_unpacked(stored: Vec2) -> Vec2 {
+    Vec2::new(stored.x - 0.5, 0.25 * stored.y)
 }

@@ -18,6 +18,9 @@ fn stored(moments: Moments) -> ArrayVec<Cow<'static, str>, MAX_STORED> {
         MomentKind::Variance => {
             push(CHEBYSHEV);
             push(include_str!("../../shaders/variance.wgsl"));
+            if moments.format() == MomentFormat::Unorm16 {
+                push(include_str!("../../shaders/variance_sixteen.wgsl"));
+            }
         }
         MomentKind::Exponential => push(include_str!("../../shaders/exponential.wgsl")),
         MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
@@ -84,6 +87,7 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
     // What it says.
     let sixteen = moments.format() == MomentFormat::Unorm16;
     match moments.kind() {
+        MomentKind::Variance if sixteen => push(include_str!("../../shaders/read_variance_sixteen.wgsl")),
         MomentKind::Variance => push(include_str!("../../shaders/read_variance.wgsl")),
         MomentKind::Exponential => push(include_str!("../../shaders/read_exponential.wgsl")),
         MomentKind::ExponentialVarianceTwo => push(include_str!("../../shaders/read_exponential_variance_two.wgsl")),
@@ -105,6 +109,7 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
 #[must_use]
 pub(super) fn prefilter(moments: Moments) -> String {
     let store = match (moments.kind(), moments.format()) {
+        (MomentKind::Variance, MomentFormat::Unorm16) => include_str!("../../shaders/store_variance_sixteen.wgsl"),
         (MomentKind::Variance, _) => include_str!("../../shaders/store_variance.wgsl"),
         (MomentKind::Exponential, _) => include_str!("../../shaders/store_exponential.wgsl"),
         (MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour, _) => {
