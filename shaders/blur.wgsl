@@ -39,17 +39,20 @@ const ANTUMBRA_BLUR_SMALLEST: f32 = 1e-30;
 
 // How many texels to either side weigh anything.
 fn antumbra_blur_reach(radius: f32, bell: bool) -> i32 {
-    return i32(ceil(select(radius - 0.5, radius * ANTUMBRA_BLUR_BELL_REACH, bell)));
+    return i32(ceil(select(radius, radius * ANTUMBRA_BLUR_BELL_REACH, bell) - 0.5));
 }
 
-// A bell is cut off at this many half-widths of the box that deviates as much, which is 2.5 of its own deviations.
+// A bell ends at this many half-widths of the box that deviates as much, which is 2.5 of its own deviations.
 const ANTUMBRA_BLUR_BELL_REACH: f32 = 1.44;
 
-// Weight of a texel at an offset: its overlap with the box, or the height of the bell.
+// Weight of a texel at an offset: its overlap with the box, times the height of the bell. Texels come and go by parts as
+// the radius changes: where it is rounded does not show.
 fn antumbra_blur_weight(offset: f32, radius: f32, bell: bool) -> f32 {
+    let reach = select(radius, radius * ANTUMBRA_BLUR_BELL_REACH, bell);
+    let overlap = clamp(reach + 0.5 - abs(offset), 0.0, 1.0);
     if (bell) {
         let share = offset / max(radius, 0.5);
-        return exp(-1.5 * share * share);
+        return exp(-1.5 * share * share) * overlap;
     }
-    return clamp(radius + 0.5 - abs(offset), 0.0, 1.0);
+    return overlap;
 }

@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! (1)  r_u = R / |t_u|,  r_v = R / |t_v|,   t_u = w² (V − v W),  t_v = w² (u W − U),   1/w linear in (u, v)
-//! (2)  weight of a texel at offset o: box: its overlap with [−r, r];  bell: e^(−3 o²/2r²), of the same deviation r/√3
+//! (2)  weight of a texel at offset o: box: its overlap with [−r, r]
+//!      bell: e^(−3 o²/2r²), of the same deviation r/√3, times its overlap with [−1.44 r, 1.44 r]
 //! ```
 //!
 //! # References
@@ -48,14 +49,16 @@ pub fn antumbra_blur_radius(blur: &BlurUniforms, texel: Vec2) -> Vec2 {
 /// Twin of `antumbra_blur_reach`: how many texels to either side weigh anything.
 #[must_use]
 pub fn antumbra_blur_reach(radius: f32, bell: bool) -> i32 {
-    (if bell { radius * ANTUMBRA_BLUR_BELL_REACH } else { radius - 0.5 }).ceil() as i32
+    (if bell { radius * ANTUMBRA_BLUR_BELL_REACH } else { radius } - 0.5).ceil() as i32
 }
 
 /// Twin of `antumbra_blur_weight`: weight of a texel at an offset.
 #[must_use]
 pub fn antumbra_blur_weight(offset: f32, radius: f32, bell: bool) -> f32 {
     let share = offset / radius.max(0.5);
-    if bell { (-1.5 * share * share).exp() } else { (radius + 0.5 - offset.abs()).clamp(0.0, 1.0) }
+    let (height, end) =
+        if bell { ((-1.5 * share * share).exp(), radius * ANTUMBRA_BLUR_BELL_REACH) } else { (1.0, radius) };
+    height * (end + 0.5 - offset.abs()).clamp(0.0, 1.0)
 }
 
 /// A weighted mean in the making: twin of `AntumbraMean`, both of plain numbers and of exponentials.

@@ -30,12 +30,11 @@ const ANTUMBRA_LEVEL_SMALLEST: f32 = 1e-6;
 #[must_use]
 pub fn antumbra_store(moments: Moments, depth: f32, first_term: u32) -> Vec4 {
     match moments.kind() {
-        MomentKind::Variance => match moments.format() {
-            MomentFormat::Unorm16 => antumbra_variance_packed(antumbra_variance_moments(depth)),
-            _ => antumbra_variance_moments(depth),
+        MomentKind::Variance => {
+            let two = antumbra_variance_moments(depth);
+            let two = if moments.format() == MomentFormat::Unorm16 { antumbra_variance_packed(two) } else { two };
+            two.extend(0.0).extend(0.0)
         }
-        .extend(0.0)
-        .extend(0.0),
         MomentKind::Exponential => Vec4::X * antumbra_exponential_moments(depth),
         MomentKind::ExponentialVarianceTwo | MomentKind::ExponentialVarianceFour => {
             antumbra_exponential_variance_moments(depth, moments.exponents().into())
@@ -51,20 +50,18 @@ pub fn antumbra_store(moments: Moments, depth: f32, first_term: u32) -> Vec4 {
 /// Twin of `antumbra_read`: share of the light at a depth by what is stored, 0 to 1. Not for a series.
 #[must_use]
 pub fn antumbra_read(moments: Moments, stored: Vec4, depth: f32, slope: Vec2) -> f32 {
-    let four = || match moments.format() {
-        MomentFormat::Unorm16 => antumbra_moments_unpacked(stored),
-        _ => stored,
-    };
     let two = || match moments.format() {
         MomentFormat::Unorm16 => antumbra_variance_unpacked(stored.xy()),
         _ => stored.xy(),
     };
+    let four = || match moments.format() {
+        MomentFormat::Unorm16 => antumbra_moments_unpacked(stored),
+        _ => stored,
+    };
     let exponents = moments.exponents().into();
     let blur = || moments.blur() + 0.5 * slope.length();
     match moments.kind() {
-        MomentKind::Variance => {
-            antumbra_variance_lit(two(), depth, moments.variance_loss() + 0.25 * slope.dot(slope))
-        }
+        MomentKind::Variance => antumbra_variance_lit(two(), depth, moments.variance_loss() + 0.25 * slope.dot(slope)),
         MomentKind::Exponential => antumbra_exponential_lit(stored.x, depth, moments.exponent()),
         MomentKind::ExponentialVarianceTwo => {
             antumbra_exponential_variance_lit_two(stored.xy(), depth, exponents, blur())

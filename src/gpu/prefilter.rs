@@ -201,8 +201,11 @@ impl Prefilter {
                 let Some(levels) = self.levels.get((view.layer * pairs + pair) as usize) else { continue };
                 let offset = self.offset(index, pair);
                 let tile = view.blur.tile;
-                self.pass(encoder, &self.along_u, depths, offset, &self.scratch, tile, next());
-                self.pass(encoder, &self.along_v, &self.scratch_group, offset, &levels[0].0, tile, next());
+                let (along_u, along_v) = (&self.along_u, &self.along_v);
+                Pass { pipeline: along_u, group: (depths, offset), target: &self.scratch, tile }
+                    .record(encoder, next());
+                let group = (&self.scratch_group, offset);
+                Pass { pipeline: along_v, group, target: &levels[0].0, tile }.record(encoder, next());
             }
         }
         for layer in layers(frame) {
@@ -210,7 +213,8 @@ impl Prefilter {
                 let Some(levels) = self.levels.get((layer * pairs + pair) as usize) else { continue };
                 for (level, pair) in levels.windows(2).enumerate() {
                     let side = (self.side >> (level + 1)).max(1);
-                    self.pass(encoder, &self.halve, &pair[0].1, 0, &pair[1].0, [0, 0, side, side], next());
+                    let (group, tile) = ((&pair[0].1, 0), [0, 0, side, side]);
+                    Pass { pipeline: &self.halve, group, target: &pair[1].0, tile }.record(encoder, next());
                 }
             }
         }
@@ -219,23 +223,24 @@ impl Prefilter {
     fn offset(&self, view: usize, pair: u32) -> u32 {
         self.stride * ((view.min(MAX_VIEWS - 1) as u32) * self.moments.layers() + pair)
     }
+}
 
-    /// One triangle over a tile: what lies outside keeps what it holds.
-    #[allow(clippy::too_many_arguments, reason = "what one draw needs, no part of which belongs together")]
-    fn pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        pipeline: &wgpu::RenderPipeline,
-        group: &wgpu::BindGroup,
-        offset: u32,
-        target: &wgpu::TextureView,
-        [x, y, side, _]: [u32; 4],
-        timestamp_writes: Option<wgpu::RenderPassTimestampWrites>,
-    ) {
+/// One triangle over a tile: what lies outside keeps what it holds.
+struct Pass<'a> {
+    pipeline: &'a wgpu::RenderPipeline,
+    /// What it reads, and where in the uniforms its block is.
+    group: (&'a wgpu::BindGroup, u32),
+    target: &'a wgpu::TextureView,
+    /// First x and y, side; the last number is not read.
+    tile: [u32; 4],
+}
+
+impl Pass<'_> {
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamp_writes: Option<wgpu::RenderPassTimestampWrites>) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("antumbra filter"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
+                view: self.target,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
@@ -245,8 +250,9 @@ impl Prefilter {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[offset]);
+        let [x, y, side, _] = self.tile;
+        pass.set_pipeline(self.pipeline);
+        pass.set_bind_group(0, self.group.0, &[self.group.1]);
         pass.set_scissor_rect(x, y, side, side);
         pass.draw(0..3, 0..1);
     }

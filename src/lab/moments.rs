@@ -123,7 +123,7 @@ impl MomentMap {
         let first = at.floor();
         let share = at - first;
         let share = if self.moments.linear { (share * SUB_TEXELS).round() / SUB_TEXELS } else { share };
-        let last = IVec2::splat(side as i32 - 1);
+        let last = UVec2::splat(side as u32 - 1).as_ivec2();
         let low = first.clamp(Vec2::splat(-1.0), Vec2::splat(side as f32)).as_ivec2();
         let texel = |dx, dy| {
             let at = (low + IVec2::new(dx, dy)).clamp(IVec2::ZERO, last).as_uvec2();

@@ -13,7 +13,10 @@ use antumbra::encoding::moments::{
     ANTUMBRA_MOMENTS_BIAS, antumbra_moments, antumbra_moments_lit, antumbra_moments_lit_within,
     antumbra_moments_packed, antumbra_moments_unpacked,
 };
-use antumbra::encoding::variance::{antumbra_darkened, antumbra_variance_lit, antumbra_variance_moments};
+use antumbra::encoding::variance::{
+    antumbra_darkened, antumbra_variance_lit, antumbra_variance_moments, antumbra_variance_packed,
+    antumbra_variance_unpacked,
+};
 use antumbra::transpile::Shader;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec4, Vec4Swizzles};
@@ -23,11 +26,13 @@ use crate::sets::Set;
 use crate::support;
 use crate::support::compute::compute;
 
-const FRAGMENTS: [&str; 20] = [
+const FRAGMENTS: [&str; 22] = [
     include_str!("../../shaders/darkened.wgsl"),
     include_str!("../../shaders/chebyshev.wgsl"),
     include_str!("../../shaders/variance.wgsl"),
     include_str!("../../shaders/variance_stored.wgsl"),
+    include_str!("../../shaders/variance_packed.wgsl"),
+    include_str!("../../shaders/variance_unpacked.wgsl"),
     include_str!("../../shaders/exponential.wgsl"),
     include_str!("../../shaders/exponential_stored.wgsl"),
     include_str!("../../shaders/exponential_mean.wgsl"),
@@ -75,11 +80,13 @@ struct Found {
     unpacked: Vec4,
     /// Two moments, a part and the mean.
     rest: Vec4,
+    /// Two moments packed, and unpacked.
+    two: Vec4,
 }
 
 const SHADER: &str = "
 struct Case { bent: vec4f, terms: vec4f, four: vec4f, rest: vec4f }
-struct Found { first: vec4f, second: vec4f, bent: vec4f, four: vec4f, packed: vec4f, unpacked: vec4f, rest: vec4f }
+struct Found { first: vec4f, second: vec4f, bent: vec4f, four: vec4f, packed: vec4f, unpacked: vec4f, rest: vec4f, two: vec4f }
 @group(0) @binding(0) var<storage, read> cases: array<Case>;
 @group(0) @binding(1) var<storage, read_write> found: array<Found>;
 const EXPONENTS = vec2f(40.0, 8.0);
@@ -107,6 +114,8 @@ const EXPONENTS = vec2f(40.0, 8.0);
         one.packed = antumbra_moments_packed(at.four);
         one.unpacked = antumbra_moments_unpacked(one.packed);
         one.rest = vec4f(antumbra_variance_moments(depth), part, antumbra_exponential_mean(part, 1.0, 80.0));
+        let packed = antumbra_variance_packed(at.rest.xy);
+        one.two = vec4f(packed, antumbra_variance_unpacked(packed));
         found[id.x] = one;
     }
 }";
@@ -228,6 +237,11 @@ fn stored(case: &Case, found: &Found) {
     let two = antumbra_variance_moments(depth);
     close(found.rest.x, two.x, 2.0 * ulp);
     close(found.rest.y, two.y, 2.0 * ulp);
+    let packed = antumbra_variance_packed(case.rest.xy());
+    let two = packed.extend(0.0).extend(0.0) + Vec4::from((Vec2::ZERO, antumbra_variance_unpacked(packed)));
+    for (found, expected) in found.two.to_array().into_iter().zip(two.to_array()) {
+        close(found, expected, 2.0 * ulp);
+    }
     let part = antumbra_exponential_part(depth, 1.0, 80.0);
     close(found.rest.z, part, (3.0 + 4.0 * 80.0) * ulp * part);
     close(found.rest.w, antumbra_exponential_mean(part, 1.0, 80.0), 8.0 * ulp);

@@ -1,9 +1,12 @@
 //! Every kind in every format: drawn, read, weighed.
 
+use antumbra::encoding::depth::Lookup;
+use antumbra::encoding::read::antumbra_filtered;
 use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor, texture_format};
 use antumbra::{MapBudget, MomentFormat, MomentKind, Moments, Radius, Remix, techniques};
+use glam::{Vec2, Vec3};
 
-use crate::stage::{Stage, encoding, fit, key_of};
+use crate::stage::{Stage, encoding, filtered, fit, key_of};
 use crate::support;
 
 /// Mean difference that a format may make, of 255: MATH.md section 7's standard deviations of depth that rounding makes,
@@ -12,8 +15,9 @@ use crate::support;
 fn allowed(moments: Moments) -> f64 {
     match (moments.kind(), moments.format()) {
         (_, MomentFormat::Float32) => 0.0,
-        (MomentKind::Variance, MomentFormat::Float16) => 12.0,
-        _ => 6.0,
+        (MomentKind::Variance, MomentFormat::Float16) => 5.0,
+        (_, MomentFormat::Float16) => 2.0,
+        _ => 1.0,
     }
 }
 
@@ -42,6 +46,33 @@ fn formats_draw_one_picture() {
             assert!(mean <= allowed(*moments) + 0.25, "{moments:?}: {mean}");
             assert!(other.iter().any(|lit| *lit < 60) && other.contains(&255), "{moments:?}");
         }
+    }
+}
+
+/// Depths anywhere in the range come back from what a format keeps: in front of a plane is light, behind it is none, or
+/// what its kind and format lose there.
+#[test]
+fn formats_hold_every_depth() {
+    for moments in Moments::all().filter(|moments| !moments.mips) {
+        let remix = Remix { encoding: encoding(moments, Radius::Texels(1.5), false), ..techniques::fsm() };
+        let frame = fit(&remix, MapBudget::one(16));
+        let (mut least_lit, mut most_dark) = (1.0_f32, 0.0_f32);
+        for step in 0..=70 {
+            let plane = step as f32 / 100.0;
+            let map = filtered(moments, &frame, &[vec![plane; 16 * 16]]).remove(0);
+            let lit = |depth| {
+                let look = Lookup { uv: Vec2::splat(0.5), depth, slope: Vec2::ZERO };
+                antumbra_filtered(frame.wgsl, &frame.uniforms.views[0], &map, &look, Vec3::ZERO)
+            };
+            least_lit = least_lit.min(lit((plane - 0.02).max(0.0)));
+            most_dark = most_dark.max(lit(plane + 0.3));
+        }
+        println!(
+            "{} {}: in front of planes at least {least_lit:.3}, behind them at most {most_dark:.3}",
+            moments.kind().name(),
+            moments.format().name()
+        );
+        assert!(least_lit > 0.95 && most_dark < 0.05, "{moments:?}: {least_lit} {most_dark}");
     }
 }
 
