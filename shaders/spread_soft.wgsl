@@ -18,12 +18,15 @@ struct AntumbraSpread {
 // Below every length that is divided by.
 const ANTUMBRA_SPREAD_SMALLEST: f32 = 1e-30;
 
+// Below every w in view.
+const ANTUMBRA_SPREAD_LEAST_W: f32 = 1e-6;
+
 // Radius of the narrowest disc, texels: at 0 edges at contacts would be as soft as one tap, at 1 softer than they need be.
 const ANTUMBRA_NARROWEST: f32 = 0.5;
 
 fn antumbra_spread(view: AntumbraView, position: vec3f, noise: f32) -> AntumbraSpread {
     let at = vec4f(position, 1.0);
-    let w = max(dot(view.w_from_render, at), ANTUMBRA_SPREAD_SMALLEST);
+    let w = max(dot(view.w_from_render, at), ANTUMBRA_SPREAD_LEAST_W);
     let uv = vec2f(dot(view.u_from_render, at), dot(view.v_from_render, at)) / w;
     // How texture coordinates change with the position: across the light alone.
     let along_u = (view.u_from_render.xyz - uv.x * view.w_from_render.xyz) / w;

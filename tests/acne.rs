@@ -62,7 +62,7 @@ proptest! {
     #[test]
     fn no_plane_shadows_itself(
         travel in direction(), tilt in direction(), log_cosine in -4.0..0.0_f64, log_size in -1.0..3.0_f64, away in direction(),
-        log_distance in prop_oneof![Just(-9.0), 0.0..6.0_f64], filter in 0..4_usize, log_side in 6..9_u32,
+        log_distance in prop_oneof![Just(-9.0), 0.0..6.0_f64], filter in 0..Pcf::ALL.len(), log_side in 6..9_u32,
         points in prop::collection::vec(prop::array::uniform2(0.0..1.0_f64), 100),
     ) {
         // A scene somewhere in render space, and a plane through it at a slope to the light.
@@ -246,7 +246,7 @@ fn warped() -> impl Strategy<Value = Warped> {
     let shape = prop::array::uniform3(prop_oneof![Just(0.0), -2.0..0.0_f64]);
     let eye = (direction(), direction(), prop_oneof![Just(0.0), 0.0..2.0_f64], 0.3..2.0_f64, -3.0..-1.0_f64);
     let law = prop_oneof![Just(DepthLaw::Linear), Just(DepthLaw::Projective)];
-    let map = (warp(), any::<bool>(), prop_oneof![0..4_usize, Just(3)], 6..9_u32, law);
+    let map = (warp(), any::<bool>(), prop_oneof![0..Pcf::ALL.len(), Just(Pcf::ALL.len() - 1)], 6..9_u32, law);
     (plane, place, shape, eye, map).prop_filter_map("no plane", |(plane, place, shape, eye, map)| {
         let ((travel, tilt, log_cosine), (log_size, away, log_distance)) = (plane, place);
         let (to, aside, distance, fov, near) = eye;

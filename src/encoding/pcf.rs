@@ -181,7 +181,6 @@ fn soft(map: &impl CompareMap, look: &Lookup) -> f32 {
 mod tests {
     use super::super::depth::DepthMap;
     use super::*;
-    use crate::frame::{MapShape, ViewUniforms, WgslKey};
     use glam::UVec2;
     use proptest::prelude::*;
 
@@ -200,24 +199,58 @@ mod tests {
             let filter = Pcf::ALL[index];
             let mut depth = Vec::new();
             let map = half_map(&mut depth);
-            let spread = Spread { least: 0.5, most: 0.5, ..Spread::default() };
+            let spread = Spread { along: Vec2::X, across: Vec2::Y, least: 0.5, most: 0.5, ..Spread::default() };
             let at = |depth| antumbra_filter(filter, &map, &Lookup { uv: Vec2::new(u, v), depth, slope: Vec2::ZERO, spread });
             prop_assert!((at(0.1) - 1.0).abs() < 1e-5);
             prop_assert!(at(0.9).abs() < 1e-5);
             let width = match filter {
                 Pcf::Point => 1e-6,
-                Pcf::Hardware2x2 | Pcf::Pcss => 1.0,
+                Pcf::Hardware2x2 => 1.0,
                 Pcf::Box3x3 => 3.0,
                 Pcf::Box5x5 => 5.0,
                 Pcf::Box7x7 => 7.0,
-                // No box.
-                Pcf::Disc => return Ok(()),
+                // No boxes.
+                Pcf::Disc | Pcf::Pcss => return Ok(()),
             };
             let expected = ((u * 16.0 - 8.0) / width + 0.5).clamp(0.0, 1.0);
             // Samplers keep 8 bits of the position between texels.
             if filter != Pcf::Point || (u * 16.0 - 8.0).abs() > 1e-3 {
                 prop_assert!((at(0.5) - expected).abs() < 0.01, "{} {}", at(0.5), expected);
             }
+        }
+    }
+
+    /// Discs as well, averaged over their turns: the share of a disc of that radius that lies over the lit half.
+    #[test]
+    fn discs_average() {
+        let (turns, mut depth) = (256_u16, Vec::new());
+        let map = half_map(&mut depth);
+        let mean = |filter, u| {
+            let spread = |noise| Spread {
+                noise,
+                // So far from its casters that the disc is as wide as may be.
+                depth: 100.0,
+                along: Vec2::X,
+                across: Vec2::Y,
+                w: 1.0,
+                least: 0.5,
+                most: 3.0,
+                ..Spread::default()
+            };
+            let look = |noise| Lookup { uv: Vec2::new(u, 0.5), depth: 0.5, slope: Vec2::ZERO, spread: spread(noise) };
+            let lit = (0..turns).map(|turn| antumbra_filter(filter, &map, &look(f32::from(turn) / f32::from(turns))));
+            lit.sum::<f32>() / f32::from(turns)
+        };
+        for step in -20..=20_i8 {
+            let across = f32::from(step) / 5.0;
+            let u = 0.5 + across / 16.0;
+            // Of the unit disc, left of a line at x; edges are a texel wide, which a disc of three hardly shows.
+            let x = (across / 3.0).clamp(-1.0, 1.0);
+            let expected = 0.5 + (x * (1.0 - x * x).sqrt() + x.asin()) / core::f32::consts::PI;
+            let found = mean(Pcf::Disc, u);
+            assert!((found - expected).abs() < 0.03, "{across}: {found}, {expected}");
+            let found = mean(Pcf::Pcss, u);
+            assert!((found - expected).abs() < 0.03, "{across}: {found}, {expected}");
         }
     }
 }

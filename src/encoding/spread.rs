@@ -41,6 +41,9 @@ pub struct Spread {
 /// Twin of the shader's constant: below every length that is divided by.
 const ANTUMBRA_SPREAD_SMALLEST: f32 = 1e-30;
 
+/// Twin of the shader's constant: below every w in view.
+const ANTUMBRA_SPREAD_LEAST_W: f32 = 1e-6;
+
 /// Twin of the shader's constant: radius of the narrowest disc, texels.
 pub(crate) const ANTUMBRA_NARROWEST: f32 = 0.5;
 
@@ -53,7 +56,7 @@ pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, noise:
     let [u_row, v_row, w_row, depth] =
         [view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render].map(Vec4::from_array);
     let at = position.extend(1.0);
-    let w = w_row.dot(at).max(ANTUMBRA_SPREAD_SMALLEST);
+    let w = w_row.dot(at).max(ANTUMBRA_SPREAD_LEAST_W);
     let uv = Vec2::new(u_row.dot(at), v_row.dot(at)) / w;
     let along_u = (u_row.xyz() - uv.x * w_row.xyz()) / w;
     let along_v = (v_row.xyz() - uv.y * w_row.xyz()) / w;

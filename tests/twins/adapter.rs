@@ -68,6 +68,25 @@ pub(crate) fn fill(gpu: &Gpu, maps: &ShadowMaps, view: &ShadowView, depth: &[f32
     gpu.queue().submit([encoder.finish()]);
 }
 
+/// Calls of a library whose filter has no disc.
+const STEADY: &str = "
+    fn given(case_: Case) -> AntumbraLookup {
+        return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy); }
+    fn visible(view: AntumbraView, position: vec3f, normal: vec3f, noise: f32) -> f32 {
+        return antumbra_visible(view, antumbra_map, antumbra_compare, position, normal); }
+    fn visibility(position: vec3f, normal: vec3f, noise: f32) -> f32 {
+        return antumbra_visibility(position, normal, 1.0); }";
+
+/// Calls of a library whose filter has one.
+const NOISY: &str = "
+    fn given(case_: Case) -> AntumbraLookup {
+        let spread = antumbra_spread(case_.view, case_.position.xyz, case_.look.w);
+        return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy, spread); }
+    fn visible(view: AntumbraView, position: vec3f, normal: vec3f, noise: f32) -> f32 {
+        return antumbra_visible_noisy(view, antumbra_map, antumbra_compare, position, normal, noise); }
+    fn visibility(position: vec3f, normal: vec3f, noise: f32) -> f32 {
+        return antumbra_visibility_noisy(position, normal, 1.0, noise); }";
+
 /// The text of a key: the library, the cases, and calls that only some keys have.
 fn text(key: WgslKey) -> String {
     let no_tap = "fn tap(look: AntumbraLookup, offset: vec2f) -> f32 { return 0.0; }";
@@ -76,25 +95,35 @@ fn text(key: WgslKey) -> String {
     let no_row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 { return 0.0; }";
     let row = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 {
         return antumbra_box_row(antumbra_map, antumbra_compare, look, x, weight, y); }";
+    let row_of_four = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 {
+        return antumbra_box_row_of_four(antumbra_map, antumbra_compare, look, x.xyzx, weight.xyzx, y); }";
     let [tap, row] = match key.filter {
         Pcf::Point | Pcf::Hardware2x2 => [no_tap, no_row],
-        Pcf::Box3x3 => [tap, no_row],
+        Pcf::Box3x3 | Pcf::Disc | Pcf::Pcss => [tap, no_row],
         Pcf::Box5x5 => [tap, row],
+        Pcf::Box7x7 => [tap, row_of_four],
     };
+    let noisy = if key.filter.is_disc() { NOISY } else { STEADY };
     let looks = match key.shape {
         MapShape::Affine => {
             "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
                 return antumbra_lookup(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
-            fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_lit(antumbra_place(position, normal)); }"
+            fn lit(position: vec3f, normal: vec3f) -> f32 { LIT }"
         }
         MapShape::Projective | MapShape::ProjectiveDepth => {
             "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
                 return antumbra_lookup_projective(view, position, normal, ANTUMBRA_REACH, ANTUMBRA_TAP_REACH); }
-            fn lit(position: vec3f, normal: vec3f) -> f32 { return antumbra_visibility(position, normal, 1.0); }"
+            fn lit(position: vec3f, normal: vec3f) -> f32 { LIT }"
         }
     };
+    let lit = if key.has_two_stages() {
+        "return antumbra_lit(antumbra_place(position, normal));"
+    } else {
+        "return antumbra_visibility(position, normal, 1.0);"
+    };
+    let looks = &looks.replace("LIT", lit);
     let library = wgsl::module(key, Bindings { group: 1, first: 0 });
-    [library.as_str(), include_str!("cases.wgsl"), looks, tap, row].join("\n")
+    [library.as_str(), include_str!("cases.wgsl"), looks, tap, row, noisy].join("\n")
 }
 
 /// Runs the cases on the adapter.

@@ -106,3 +106,24 @@ impl LookupBound {
         }
     }
 }
+
+/// By how much of itself the spread of a penumbra's taps may be off: by what the derivative of texture coordinates loses
+/// where rows and w cancel.
+pub(crate) fn spread(view: &ViewUniforms, position: Vec3) -> f64 {
+    let at = position.extend(1.0).as_dvec4();
+    let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4();
+    let rows = [view.u_from_render, view.v_from_render].map(row);
+    let by = row(view.w_from_render);
+    let w = by.dot(at);
+    let off_w = by.abs().dot(at.abs()) / w.abs();
+    // What a row less a coordinate times w loses, over the smallest of the two gradients.
+    let lost = rows.map(|row| {
+        let coordinate = row.dot(at) / w;
+        let off = row.abs().dot(at.abs()) / w.abs() + coordinate.abs() * off_w;
+        let gradient = (row - by * coordinate).truncate().length();
+        (row.truncate().length() + by.truncate().length() * (coordinate.abs() + 4.0 * off)) / gradient
+    });
+    let lost = lost[0].max(lost[1]);
+    // A view without any texels has no taps to be off.
+    if lost.is_finite() { 16.0 * ULP * (lost + off_w + 1.0) } else { 0.0 }
+}

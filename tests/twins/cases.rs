@@ -96,7 +96,7 @@ pub(crate) fn case(dice: &mut Dice, frames: &[ShadowFrame], side: u32, depth: &[
         view,
         position: position.extend(1.0),
         normal: normal.extend(0.0),
-        look: Vec4::new(place(dice), place(dice), look_depth, 0.0),
+        look: Vec4::new(place(dice), place(dice), look_depth, dice.single(0.0, 1.0)),
         slope_offset: Vec4::new(slope.x, slope.y, offset.x, offset.y),
         row: dice.vector(3.0).extend(dice.single(-3.0, 3.0)),
         weight: dice.vector(0.5).extend(0.0) + Vec4::ONE,

@@ -4,7 +4,7 @@ struct Case {
     view: AntumbraView,
     position: vec4f,
     normal: vec4f,
-    // uv, depth.
+    // uv, depth, and the noise that turns a disc.
     look: vec4f,
     // Slope, and the offset of a tap.
     slope_offset: vec4f,
@@ -40,14 +40,14 @@ fn run(@builtin(global_invocation_id) id: vec3u) {
     let case_ = cases[id.x];
     let view = case_.view;
     let found = lookup(view, case_.position.xyz, case_.normal.xyz);
-    let given = AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy);
+    let given = given(case_);
     var out: Outcome;
     out.uv = found.uv;
     out.depth = found.depth;
     out.slope = found.slope;
     out.filtered = antumbra_filter(antumbra_map, antumbra_compare, given);
-    out.visible = antumbra_visible(view, antumbra_map, antumbra_compare, case_.position.xyz, case_.normal.xyz);
-    out.visibility = antumbra_visibility(case_.position.xyz, case_.normal.xyz, 1.0);
+    out.visible = visible(view, case_.position.xyz, case_.normal.xyz, case_.look.w);
+    out.visibility = visibility(case_.position.xyz, case_.normal.xyz, case_.look.w);
     out.lit = lit(case_.position.xyz, case_.normal.xyz);
     out.caster_depth = antumbra_caster_depth(view.depth_from_render, case_.position.xyz);
     let matrix = mat4x4f(view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render);

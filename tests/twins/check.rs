@@ -2,8 +2,10 @@
 
 use antumbra::encoding::depth::{
     CompareMap, DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter,
-    antumbra_tap, antumbra_visible,
+    antumbra_tap, antumbra_visible_noisy,
 };
+use antumbra::encoding::pcf::antumbra_box_row_of_four;
+use antumbra::encoding::spread::antumbra_spread;
 use antumbra::{Pcf, ViewUniforms, WgslKey};
 use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
 
@@ -67,13 +69,19 @@ pub(crate) struct Doubt {
 
 impl Doubt {
     /// `None` where rounding decides about everything.
-    pub(crate) fn of(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Option<Self> {
+    pub(crate) fn of(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Option<Self> {
         let (look, bound) = bound::lookup(key, view, position, normal)?;
+        let look = Lookup { spread: antumbra_spread(key, view, position, noise), ..look };
+        let (turned, reach) = (off_by_turning(key, view, position), key.filter.reach());
         // Beside the lookup's own error, what the filter does to it.
-        let uv = core::array::from_fn(|axis| bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0));
+        let uv = core::array::from_fn(|axis| {
+            bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0) + turned * f64::from(view.bias[3])
+        });
         let slope = f64::from(look.slope.abs().element_sum());
-        let depth =
-            bound.depth + 4.0 * (bound.slope[0] + bound.slope[1]) + 8.0 * ULP * (f64::from(look.depth.abs()) + slope);
+        let depth = bound.depth
+            + (reach + 1.0) * (bound.slope[0] + bound.slope[1])
+            + 8.0 * ULP * (f64::from(look.depth.abs()) + (0.25 * reach).max(1.0) * slope)
+            + turned * slope;
         Some(Self { look, uv, depth })
     }
 
@@ -88,6 +96,20 @@ impl Doubt {
     }
 }
 
+/// By how much a disc's points may be off on an adapter, as a share of its radius: the cosine and the sine of its turn, and
+/// the products with the golden angle. (WGSL promises 2⁻¹¹ of the former; adapters keep this.)
+const TURNED_OFF: f64 = 1e-5;
+
+/// By how many texels the points of a filter's disc may be off.
+fn off_by_turning(key: WgslKey, view: &ViewUniforms, position: Vec3) -> f64 {
+    let radius = key.filter.reach() - key.filter.tap_reach();
+    match key.filter {
+        Pcf::Disc => radius * TURNED_OFF,
+        Pcf::Pcss => radius * (TURNED_OFF + bound::spread(view, position)),
+        _ => 0.0,
+    }
+}
+
 /// Values of a function of a lookup on all sides of what rounding may do to it.
 fn band(look: &Lookup, uv: [f64; 2], depth: f64, value: impl Fn(&Lookup) -> f32) -> (f32, f32) {
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -96,7 +118,7 @@ fn band(look: &Lookup, uv: [f64; 2], depth: f64, value: impl Fn(&Lookup) -> f32)
             for z in [-1.0, 0.0, 1.0] {
                 let moved = look.uv.as_dvec2() + DVec2::new(x * uv[0], y * uv[1]);
                 let depth = (f64::from(look.depth) + z * depth) as f32;
-                let value = value(&Lookup { uv: moved.as_vec2(), depth, slope: look.slope });
+                let value = value(&Lookup { uv: moved.as_vec2(), depth, ..*look });
                 (low, high) = (low.min(value), high.max(value));
             }
         }
@@ -104,21 +126,30 @@ fn band(look: &Lookup, uv: [f64; 2], depth: f64, value: impl Fn(&Lookup) -> f32)
     (low, high)
 }
 
-pub(crate) fn filters(filter: Pcf, map: &DepthMap, case: &Case, outcome: &Outcome, worst: &mut Worst) {
+pub(crate) fn filters(key: WgslKey, map: &DepthMap, case: &Case, outcome: &Outcome, worst: &mut Worst) {
+    let (filter, position) = (key.filter, case.position.truncate());
     let look = Lookup {
         uv: Vec2::new(case.look.x, case.look.y),
         depth: case.look.z,
         slope: Vec2::new(case.slope_offset.x, case.slope_offset.y),
+        spread: antumbra_spread(key, &case.view, position, case.look.w),
     };
-    // Coordinates are scaled by the size and moved by half a texel; depths move along the slope by up to three texels.
-    let uv = [look.uv.x, look.uv.y].map(|place| 8.0 * ULP * (f64::from(place).abs() + 4.0 / f64::from(map.size.x)));
-    let depth = 8.0 * ULP * f64::from(look.depth.abs() + 4.0 * look.slope.abs().element_sum());
+    // Coordinates are scaled by the size and moved by half a texel; depths move along the slope by up to a reach.
+    let (side, reach, turned) =
+        (f64::from(map.size.x), filter.reach().max(3.0) + 1.0, off_by_turning(key, &case.view, position));
+    if turned > 0.25 {
+        worst.unspread += 1;
+        return;
+    }
+    let uv = [look.uv.x, look.uv.y].map(|place| 8.0 * ULP * (f64::from(place).abs() + reach / side) + turned / side);
+    let slope = f64::from(look.slope.abs().element_sum());
+    let depth = 8.0 * ULP * (f64::from(look.depth.abs()) + reach * slope) + turned * slope;
     let mut check = |name: &str, shader: f32, scale: f32, value: &dyn Fn(&Lookup) -> f32| {
         within(name, shader, band(&look, uv, depth, value), scale, case, worst);
     };
     check("filter", outcome.filtered, 1.0, &|look| antumbra_filter(filter, map, look));
     let offset = Vec2::new(case.slope_offset.z, case.slope_offset.w);
-    if matches!(filter, Pcf::Box3x3 | Pcf::Box5x5) {
+    if !matches!(filter, Pcf::Point | Pcf::Hardware2x2) {
         check("tap", outcome.tap, 1.0, &|look| antumbra_tap(map, look, offset));
     }
     if filter == Pcf::Box5x5 {
@@ -126,19 +157,32 @@ pub(crate) fn filters(filter: Pcf, map: &DepthMap, case: &Case, outcome: &Outcom
         let scale = weight.element_sum();
         check("row", outcome.row, scale, &|look| antumbra_box_row(map, look, x, weight, case.row.w));
     }
+    if filter == Pcf::Box7x7 {
+        let (x, weight) = (case.row.truncate().extend(case.row.x), case.weight.truncate().extend(case.weight.x));
+        let scale = weight.element_sum();
+        check("row", outcome.row, scale, &|look| antumbra_box_row_of_four(map, look, x, weight, case.row.w));
+    }
 }
 
-pub(crate) fn visible(key: WgslKey, map: &DepthMap, case: &Case, view: &ViewUniforms, shader: f32, worst: &mut Worst) {
+pub(crate) fn visible(
+    key: WgslKey,
+    map: &DepthMap,
+    case: &Case,
+    view: &ViewUniforms,
+    noise: f32,
+    shader: f32,
+    worst: &mut Worst,
+) {
     let filter = key.filter;
     let (position, normal) = (case.position.truncate(), case.normal.truncate());
     assert!((0.0..=1.0 + WEIGHT_TOLERANCE).contains(&shader), "{shader} is no share: {case:?}");
-    let Some(doubt) = Doubt::of(key, view, position, normal) else { return };
+    let Some(doubt) = Doubt::of(key, view, position, normal, noise) else { return };
     if doubt.is_wide(map) {
         worst.undecided += 1;
         return;
     }
     // The twin itself is the middle of the band.
-    let twin = antumbra_visible(key, view, map, position, normal);
+    let twin = antumbra_visible_noisy(key, view, map, position, normal, noise);
     assert_eq!(twin.to_bits(), antumbra_filter(filter, map, &doubt.look).to_bits(), "{case:?}");
     within("visible", shader, doubt.band(filter, map), 1.0, case, worst);
 }

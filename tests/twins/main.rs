@@ -85,6 +85,8 @@ struct Worst {
     behind: usize,
     /// Points so near the plane through that centre that rounding decides where they go.
     undecided: usize,
+    /// Penumbras so near that plane that rounding decides how wide they are.
+    unspread: usize,
 }
 
 fn compare(gpu: &Gpu, key: WgslKey, side: u32) -> Worst {
@@ -106,13 +108,14 @@ fn compare(gpu: &Gpu, key: WgslKey, side: u32) -> Worst {
     for (case, outcome) in cases.iter().zip(&outcomes) {
         check::lookup(key, case, outcome, &mut worst);
         check::caster(case, outcome);
-        check::filters(filter, &map, case, outcome, &mut worst);
-        check::visible(key, &map, case, &case.view, outcome.visible, &mut worst);
-        check::visible(key, &map, case, &frames[0].uniforms.views[0], outcome.visibility, &mut worst);
-        check::visible(key, &map, case, &frames[0].uniforms.views[0], outcome.lit, &mut worst);
+        check::filters(key, &map, case, outcome, &mut worst);
+        let (own, noise) = (&frames[0].uniforms.views[0], case.look.w);
+        check::visible(key, &map, case, &case.view, noise, outcome.visible, &mut worst);
+        check::visible(key, &map, case, own, noise, outcome.visibility, &mut worst);
+        check::visible(key, &map, case, own, 0.0, outcome.lit, &mut worst);
     }
     // Bounds that doubt everything would prove nothing.
-    assert!(worst.doubtful * 8 < 3 * CASES && worst.undecided * 8 < CASES, "{worst:?}");
+    assert!(worst.doubtful * 8 < 3 * CASES && worst.undecided * 8 < CASES && worst.unspread * 8 < CASES, "{worst:?}");
     assert!(key.shape == MapShape::Affine || worst.behind * 50 > CASES, "{worst:?}");
     worst
 }

@@ -1,7 +1,7 @@
 //! Several maps: which of them a receiver reads, and how neighbours are blended.
 
 use antumbra::encoding::depth::DepthMap;
-use antumbra::encoding::split::{OnMap, antumbra_index, antumbra_room, antumbra_visibility};
+use antumbra::encoding::split::{OnMap, antumbra_index, antumbra_room, antumbra_visibility_noisy};
 use antumbra::gpu::{ShadowMaps, ShadowMapsDescriptor};
 use antumbra::lab::gpu::{Gpu, read_depth};
 use antumbra::wgsl::{self, Bindings};
@@ -40,7 +40,7 @@ fn twins_agree_on_several_maps() {
     let Some(gpu) = support::gpu() else { return };
     for shape in MapShape::ALL {
         for (select, blend) in Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]) {
-            for filter in [Pcf::Hardware2x2, Pcf::Box3x3] {
+            for filter in [Pcf::Hardware2x2, Pcf::Box3x3, Pcf::Disc, Pcf::Pcss] {
                 let key = WgslKey { texel: Texel::Depth, filter, shape, maps: MAPS, select, blend };
                 // All maps in use, and one left over.
                 for views in [MAPS, MAPS - 1] {
@@ -80,7 +80,15 @@ fn compare(gpu: &Gpu, key: WgslKey, views: usize) -> Tally {
     }
     // Run both.
     let cases: Vec<Case> = (0..CASES).map(|_| case(&mut dice, &frame)).collect();
-    let text = [wgsl::module(key, Bindings { group: 1, first: 0 }).as_str(), include_str!("many.wgsl")].join("\n");
+    let call = if key.filter.is_disc() {
+        "return antumbra_visibility_noisy(position, normal, view_depth, noise);"
+    } else {
+        "return antumbra_visibility(position, normal, view_depth);"
+    };
+    let call =
+        format!("fn visibility(position: vec3f, normal: vec3f, view_depth: f32, noise: f32) -> f32 {{ {call} }}");
+    let library = wgsl::module(key, Bindings { group: 1, first: 0 });
+    let text = [library.as_str(), include_str!("many.wgsl"), &call].join("\n");
     let found: Vec<f32> = compute(gpu, &text, &cases, &maps.bind_entries(0));
     let maps: Vec<_> = depths.iter().map(|depth| DepthMap { size: UVec2::splat(SIDE), depth }).collect();
     let mut tally = Tally::default();
@@ -98,7 +106,9 @@ fn compare(gpu: &Gpu, key: WgslKey, views: usize) -> Tally {
 /// A frame of several views of a box of ten units, each with a domain of depths and a rectangle of its own: the nearest
 /// is the smallest.
 fn several(dice: &mut Dice, key: WgslKey, views: usize) -> ShadowFrame {
-    let one = WgslKey { filter: key.filter, shape: key.shape, ..WgslKey::default() };
+    // Wide borders would leave next to nothing of maps as small as these.
+    let filter = if key.filter.is_disc() { Pcf::Hardware2x2 } else { key.filter };
+    let one = WgslKey { filter, shape: key.shape, ..WgslKey::default() };
     let mut whole = frame(dice, one, SIDE, 0);
     let layers = u32::from(MAPS);
     (whole.wgsl, whole.map) = (key, MapBudget { side: SIDE, layers, views: layers });
@@ -126,6 +136,10 @@ fn placed(dice: &mut Dice, key: WgslKey, view: &ViewUniforms, index: usize) -> V
     let half = [0.12, 0.22, 0.31, 0.44][index.min(3)];
     let [u, v] = [dice.single(0.47, 0.53), dice.single(0.47, 0.53)];
     view.rect = [u - half, v - half, u + half, v + half];
+    if key.filter == Pcf::Pcss {
+        // World units of radius a unit of depth, some ten texels; and the most that the filter reaches.
+        view.moments = [2.0, 16.0, 0.0, 0.0];
+    }
     match key.select {
         Select::Depth => {
             let (near, far) = (3.0 * index as f32, 3.0 * (index + 1) as f32);
@@ -151,7 +165,7 @@ fn case(dice: &mut Dice, frame: &ShadowFrame) -> Case {
     };
     let position = if dice.below(8) == 0 { dice.vector(50.0) } else { dice.vector(5.0) };
     let normal = if dice.below(8) == 0 { Vec3::ZERO } else { dice.vector(1.0).normalize_or(Vec3::Y) };
-    Case { position: position.extend(eye_depth), normal: normal.extend(0.0) }
+    Case { position: position.extend(eye_depth), normal: normal.extend(dice.single(0.0, 1.0)) }
 }
 
 fn check(frame: &ShadowFrame, maps: &[DepthMap], case: &Case, shader: f32, tally: &mut Tally) {
@@ -166,7 +180,9 @@ fn check(frame: &ShadowFrame, maps: &[DepthMap], case: &Case, shader: f32, tally
         let Some(map) = OnMap::of(&frame.uniforms.views[index], maps).filter(|_| index < maps.len()) else {
             return false;
         };
-        let Some(doubt) = Doubt::of(key, &frame.uniforms.views[index], position, normal) else { return true };
+        let Some(doubt) = Doubt::of(key, &frame.uniforms.views[index], position, normal, case.normal.w) else {
+            return true;
+        };
         let (low, high) = doubt.band(key.filter, &map);
         doubt.is_wide(&map) || high - low > WEIGHT_TOLERANCE
     };
@@ -174,7 +190,7 @@ fn check(frame: &ShadowFrame, maps: &[DepthMap], case: &Case, shader: f32, tally
         tally.doubtful += 1;
         return;
     }
-    let twin = antumbra_visibility(key, &frame.uniforms, maps, position, normal, case.position.w);
+    let twin = antumbra_visibility_noisy(key, &frame.uniforms, maps, position, normal, case.position.w, case.normal.w);
     let difference = (shader - twin).abs();
     assert!(difference <= 2.0 * WEIGHT_TOLERANCE, "{key:?}: {shader} and {twin}, of {read:?}: {case:?}");
     tally.worst = tally.worst.max(difference);
@@ -197,7 +213,7 @@ fn consulted(frame: &ShadowFrame, case: &Case) -> Option<Vec<usize>> {
     }
     let mut read = Vec::new();
     for (index, view) in uniforms.views[..frame.views.len()].iter().enumerate() {
-        let doubt = Doubt::of(key, view, position, normal)?;
+        let doubt = Doubt::of(key, view, position, normal, case.normal.w)?;
         let room = f64::from(antumbra_room(view, &doubt.look));
         let slack = doubt.uv[0].max(doubt.uv[1]) + 8.0 * ULP;
         if room.abs() <= slack || (f64::from(doubt.look.depth) - 1.0).abs() <= doubt.depth {

@@ -2,6 +2,7 @@
 struct Case {
     // Position, and the eye depth.
     position: vec4f,
+    // Normal, and the noise that turns a disc.
     normal: vec4f,
 }
 
@@ -14,5 +15,5 @@ fn run(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let case_ = cases[id.x];
-    found[id.x] = antumbra_visibility(case_.position.xyz, case_.normal.xyz, case_.position.w);
+    found[id.x] = visibility(case_.position.xyz, case_.normal.xyz, case_.position.w, case_.normal.w);
 }

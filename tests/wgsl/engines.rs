@@ -86,6 +86,11 @@ fn converts_to_other_languages() {
             assert!(shader.msl().unwrap().starts_with("// language: metal"), "{key:?}");
         }
         for version in Glsl::ALL {
+            // What compares with depths and reads them as well is not claimed.
+            if key.filter.reads_depths() {
+                assert!(library.glsl_library(version).is_err() && linked.glsl(version, "fragment").is_err(), "{key:?}");
+                continue;
+            }
             let text =
                 library.glsl_library(version).unwrap_or_else(|error| panic!("{key:?} {version:?}: {error}")).text;
             let sampler = match wgsl::texture(key) {

@@ -93,17 +93,22 @@ fn is_series(key: WgslKey) -> bool {
 #[test]
 fn one_lookup_is_straight_code() {
     for key in WgslKey::all().filter(|key| key.maps == 1 && !is_series(*key)) {
+        // The points of a disc come one by one: once, and once more where casters are searched for.
+        let loops = if !key.filter.is_disc() {
+            0
+        } else if key.filter.reads_depths() {
+            2
+        } else {
+            1
+        };
         let shader = Shader::parse(&host(key, PLACES[0])).unwrap().keep(lookups(key)).unwrap();
         assert!(shader.module.functions.len() >= 3, "{key:?}: nothing was looked at");
         for (_, ty) in shader.module.types.iter() {
             assert!(!matches!(ty.inner, TypeInner::Array { .. } | TypeInner::BindingArray { .. }), "{key:?}: {ty:?}");
         }
-        for (_, function) in shader.module.functions.iter() {
-            assert!(
-                !any_statement(&function.body, &|statement| matches!(statement, Statement::Loop { .. })),
-                "{key:?}"
-            );
-        }
+        let has_loop = |block| any_statement(block, &|statement| matches!(statement, Statement::Loop { .. }));
+        let with_loops = shader.module.functions.iter().filter(|(_, function)| has_loop(&function.body)).count();
+        assert_eq!(with_loops, loops, "{key:?}");
     }
 }
 
@@ -116,13 +121,26 @@ fn samples_per_lookup() {
         let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
         let expected = match (key.texel, key.filter) {
             (Texel::Moments(moments), _) if !moments.linear => 0,
-            (Texel::Moments(_), _) | (_, Pcf::Point | Pcf::Hardware2x2) => 1,
+            // In a loop over the points of a disc.
+            (Texel::Moments(_), _) | (_, Pcf::Point | Pcf::Hardware2x2 | Pcf::Disc | Pcf::Pcss) => 1,
             (_, Pcf::Box3x3) => 4,
             (_, Pcf::Box5x5) => 9,
+            (_, Pcf::Box7x7) => 16,
         };
+        let points = if key.filter.is_disc() { constant_u32(&shader.module, "ANTUMBRA_DISC_TAPS") } else { 1 };
+        assert!(matches!(key.texel, Texel::Moments(_)) || key.filter.samples() == expected as u32 * points, "{key:?}");
         assert_eq!(samples(&shader.module, "antumbra_visible"), expected, "{key:?}");
         let lookups = if key.select == Select::Depth && key.blend { 2 } else { 1 };
         assert_eq!(samples(&shader.module, "antumbra_visibility"), lookups * expected, "{key:?}");
+    }
+}
+
+/// A constant of a module, whole.
+fn constant_u32(module: &naga::Module, name: &str) -> u32 {
+    let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name)).unwrap();
+    match module.global_expressions[constant.init] {
+        Expression::Literal(naga::Literal::U32(value)) => value,
+        ref other => panic!("{name} is {other:?}"),
     }
 }
 
@@ -145,6 +163,8 @@ fn two_stages_are_for_one_affine_map_alone() {
         assert_eq!(has("antumbra_index"), key.maps > 1 && key.select == Select::Depth, "{key:?}");
         assert_eq!(has("antumbra_room"), key.maps > 1 && key.select == Select::Finest, "{key:?}");
         assert_eq!(has("antumbra_lookup_projective"), !affine, "{key:?}");
+        let noisy = key.texel == Texel::Depth && key.filter.is_disc();
+        assert_eq!([has("antumbra_visibility_noisy"), has("antumbra_visible_noisy")], [noisy; 2], "{key:?}");
         for name in ["antumbra_visibility", "antumbra_visible", "antumbra_caster", "antumbra_caster_depth"] {
             assert!(has(name), "{key:?}: {name}");
         }
