@@ -7,11 +7,13 @@ use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 use crate::content::{Content, Place};
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
-use crate::split::depth::MAX_PLANES;
 use crate::texel::{BlurUniforms, Texel};
 
 /// Most views of one light.
 pub const MAX_VIEWS: usize = 8;
+
+/// Most planes of depth splits: the ends of the range, and one between any two maps.
+pub const MAX_PLANES: usize = MAX_VIEWS + 1;
 
 /// Most lines of [`ShadowFrame::left_out`]: seven a view (receivers, window, border, texels, penumbra, and two of the
 /// warp), and five of the whole.

@@ -25,10 +25,8 @@
 use arrayvec::ArrayVec;
 
 use crate::error::{FitError, finite};
+pub use crate::frame::MAX_PLANES;
 use crate::frame::{MAX_VIEWS, Select};
-
-/// Most planes: the ends of the range, and one between any two maps.
-pub const MAX_PLANES: usize = MAX_VIEWS + 1;
 
 /// Largest offset of interior planes, world units: as large as scenes may be.
 const LARGEST_OFFSET: f64 = 1e15;

@@ -136,6 +136,11 @@ fn stored_numbers(moments: Moments) -> String {
 /// What is stored of a depth.
 fn stored(moments: Moments) -> &'static [&'static str] {
     match (moments.kind(), moments.format()) {
+        (MomentKind::Variance, MomentFormat::Unorm16) => &[
+            include_str!("../../shaders/variance_stored.wgsl"),
+            include_str!("../../shaders/variance_packed.wgsl"),
+            include_str!("../../shaders/store_variance_sixteen.wgsl"),
+        ],
         (MomentKind::Variance, _) => {
             &[include_str!("../../shaders/variance_stored.wgsl"), include_str!("../../shaders/store_variance.wgsl")]
         }

@@ -2,6 +2,7 @@
 
 use antumbra::encoding::depth::Lookup;
 use antumbra::encoding::read::antumbra_filtered;
+use antumbra::encoding::spread::Spread;
 use antumbra::gpu::{self, ShadowMaps, ShadowMapsDescriptor, texture_format};
 use antumbra::{MapBudget, MomentFormat, MomentKind, Moments, Radius, Remix, techniques};
 use glam::{Vec2, Vec3};
@@ -61,7 +62,7 @@ fn formats_hold_every_depth() {
             let plane = step as f32 / 100.0;
             let map = filtered(moments, &frame, &[vec![plane; 16 * 16]]).remove(0);
             let lit = |depth| {
-                let look = Lookup { uv: Vec2::splat(0.5), depth, slope: Vec2::ZERO };
+                let look = Lookup { uv: Vec2::splat(0.5), depth, slope: Vec2::ZERO, spread: Spread::default() };
                 antumbra_filtered(frame.wgsl, &frame.uniforms.views[0], &map, &look, Vec3::ZERO)
             };
             least_lit = least_lit.min(lit((plane - 0.02).max(0.0)));

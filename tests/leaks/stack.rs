@@ -74,7 +74,8 @@ impl Stage {
 
     fn mask(&self, encoding: Encoding) -> Vec<f32> {
         let remix = Remix { encoding, ..techniques::fsm() };
-        let frame = remix.fit(&self.setting.input(&self.subject, &[], remix.wgsl_key(), SIDE)).expect("a legal setting");
+        let frame =
+            remix.fit(&self.setting.input(&self.subject, &[], remix.wgsl_key(), SIDE)).expect("a legal setting");
         mask_from_bytes(&cpu::render(&self.subject, &self.visible, &frame, &self.setting).mask)
     }
 
@@ -104,7 +105,8 @@ fn overlapping_cards_leak_less_with_more_moments() {
     println!("| encoding | dark | leak | more than half lit | false shadow | excess |\n|---|--:|--:|--:|--:|--:|");
     let say = |name: &str, dark: f32, mask: &[f32]| {
         let found = stage.found(mask);
-        let [leak, wrong, shadow, excess] = [found.leak, found.wrong_leak, found.shadow, found.excess].map(|x| 100.0 * x);
+        let [leak, wrong, shadow, excess] =
+            [found.leak, found.wrong_leak, found.shadow, found.excess].map(|x| 100.0 * x);
         println!("| {name} | {dark} | {leak:.4} | {wrong:.4} | {shadow:.4} | {excess:.3} |");
         save(&format!("{name} {dark}"), mask);
         found

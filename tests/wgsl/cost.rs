@@ -144,7 +144,14 @@ fn cost_of_every_key_is_as_documented() {
 #[test]
 fn texts_hold_what_their_keys_need() {
     // What engines call besides.
-    let called = ["antumbra_caster", "antumbra_caster_depth", "antumbra_place", "antumbra_lit", "antumbra_visible"];
+    let called = [
+        "antumbra_caster",
+        "antumbra_caster_depth",
+        "antumbra_place",
+        "antumbra_lit",
+        "antumbra_visible",
+        "antumbra_visible_noisy",
+    ];
     for key in crate::keys::covering() {
         let (_, _, unused) = cost(key);
         let unknown: Vec<_> = unused.iter().filter(|name| !called.contains(&name.as_str())).collect();
