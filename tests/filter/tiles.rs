@@ -3,10 +3,14 @@
 use antumbra::encoding::depth::CompareMap;
 use antumbra::encoding::split::OnMap;
 use antumbra::gpu::{ShadowMaps, wgpu};
+use antumbra::lab::cpu::{self, Visible};
 use antumbra::lab::gpu::{Renderer, read_moments};
-use antumbra::{MomentFormat, MomentKind, Moments, Radius, ShadowFrame};
+use antumbra::lab::subject::{Setting, Subject};
+use antumbra::{DepthRange, Light, MomentFormat, MomentKind, Moments, Radius, ShadowFrame};
+use glam::DVec3;
 
-use crate::stage::{Stage, encoding, filtered, fit, kinds, tiled};
+use crate::stage::{SIZE, Stage, encoding, filtered, fit, kinds, tiled};
+use crate::support;
 
 /// Side of a layer, texels: the smallest tiles are 32.
 const SIDE: u32 = 256;
@@ -98,6 +102,25 @@ fn tiles_are_layers() {
             println!("{} {}, side {side}: mips change {differ} pixels", moments.kind().name(), moments.format().name());
             assert!(differ > 100, "{moments:?}, side {side}: {differ} pixels");
         }
+    }
+}
+
+/// Read from small levels of shared layers, the picture is the software renderer's.
+#[test]
+fn levels_are_read_as_in_memory() {
+    let Some(stage) = Stage::new() else { return };
+    let (camera, origin) = (support::camera(SIZE), DVec3::ZERO);
+    let (light, subject) = (Light::Directional { travel: support::travel() }, Subject::new(support::boxes()));
+    let setting = Setting { camera, light, visible: DepthRange { near: 0.0, far: 100.0 }, origin };
+    let visible = Visible::draw(&subject.model, &camera, origin);
+    for moments in ways().map(|moments| moments.read(moments.linear, true)) {
+        let (remix, map) = tiled(encoding(moments, Radius::Texels(1.5), false), 1024);
+        let frame = fit(&remix, map);
+        let (gpu, software) = (stage.picture(&frame), cpu::render(&subject, &visible, &frame, &setting).mask);
+        let differ = gpu.iter().zip(&software).filter(|(gpu, cpu)| gpu.abs_diff(**cpu) > 8).count();
+        println!("{} {}: {differ} of {} pixels differ", moments.kind().name(), moments.format().name(), gpu.len());
+        // Camera edges that rasterisers put into different pixels.
+        assert!(differ * 200 < gpu.len(), "{moments:?}: {differ} pixels");
     }
 }
 
