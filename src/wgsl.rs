@@ -144,9 +144,10 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
         Texel::Moments(moments) => fragments.extend(moments::read(moments, is_arrayed(key))),
     }
     fragments.extend(look(key).into_iter().map(Cow::Borrowed));
-    let visible = match is_arrayed(key) {
-        true => include_str!("../shaders/visibility_many.wgsl"),
-        false => include_str!("../shaders/visibility_one.wgsl"),
+    let visible = if is_arrayed(key) {
+        include_str!("../shaders/visibility_many.wgsl")
+    } else {
+        include_str!("../shaders/visibility_one.wgsl")
     };
     fragments.extend(disc::noisy(key, visible, disc::VISIBLE_STEADY));
     fragments
@@ -163,9 +164,10 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
         Pcf::Box7x7 => [TAP, include_str!("../shaders/pcf_box_seven.wgsl")].into_iter().collect(),
         Pcf::Disc => [TAP, disc::POINTS, include_str!("../shaders/pcf_disc.wgsl")].into_iter().collect(),
         Pcf::Pcss => {
-            let depth = match is_arrayed(key) {
-                true => include_str!("../shaders/depth_many.wgsl"),
-                false => include_str!("../shaders/depth_one.wgsl"),
+            let depth = if is_arrayed(key) {
+                include_str!("../shaders/depth_many.wgsl")
+            } else {
+                include_str!("../shaders/depth_one.wgsl")
             };
             [TAP, disc::POINTS, depth, include_str!("../shaders/pcf_soft.wgsl")].into_iter().collect()
         }

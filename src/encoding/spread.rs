@@ -10,6 +10,9 @@
 //!
 //! Taps are where this derivative says, not where the world's disc lies exactly; 1/w falls linearly on the way there
 //! (bias.rs, equation 1), which is what linear depth is recovered with.
+//!
+//! # References
+//! - Fernando, *Percentage-closer soft shadows*, 2005 (the width of a penumbra).
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
