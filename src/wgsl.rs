@@ -164,9 +164,10 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
         Pcf::Box7x7 => [TAP, include_str!("../shaders/pcf_box_seven.wgsl")].into_iter().collect(),
         Pcf::Disc => [TAP, disc::POINTS, include_str!("../shaders/pcf_disc.wgsl")].into_iter().collect(),
         Pcf::Pcss => {
-            let depth = match is_arrayed(key) {
-                true => include_str!("../shaders/depth_many.wgsl"),
-                false => include_str!("../shaders/depth_one.wgsl"),
+            let depth = if is_arrayed(key) {
+                include_str!("../shaders/depth_many.wgsl")
+            } else {
+                include_str!("../shaders/depth_one.wgsl")
             };
             [TAP, disc::POINTS, depth, include_str!("../shaders/pcf_soft.wgsl")].into_iter().collect()
         }

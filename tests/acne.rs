@@ -8,7 +8,7 @@ use antumbra::lab::raster::{DepthMode, DepthTarget, RasterPass, rasterise};
 use antumbra::lab::scene::{SOLID, SceneModel};
 use antumbra::warp::{Focus, Warp};
 use antumbra::{
-    Aabb, Camera, DepthLaw, Encoding, FitInput, Light, MapBudget, MapShape, Pcf, Remix, Scene, ShadowFrame,
+    Aabb, Camera, DepthLaw, Encoding, FitInput, Light, MapBudget, MapShape, Part, Pcf, Remix, Scene, ShadowFrame,
     ShadowTechnique, techniques,
 };
 use common::{direction, view_point};
@@ -302,6 +302,10 @@ proptest! {
         let Some(point) = pixels.into_iter().find_map(|pixel| case.seen(pixel)) else { return Ok(()) };
         // Where f32 positions are coarser than texels, shadows are as coarse as positions.
         if frame.uniforms.views[0].bias[0] > 1.0 {
+            return Ok(());
+        }
+        // Near the rim of maps that are too small for it, a filter reads light from beyond; the report says so.
+        if frame.left_out.iter().any(|cut| cut.part == Part::Border(0)) {
             return Ok(());
         }
         // A sheet above the whole plane, as near as it may be at the point.

@@ -94,7 +94,7 @@ fn fraction(uv: Vec2, size: Vec2) -> Vec2 {
 const ANTUMBRA_TURN: f32 = core::f32::consts::TAU;
 
 /// Twin of the shader's constant: cosine and sine of the golden angle, π(3 − √5).
-const ANTUMBRA_GOLDEN: Vec2 = Vec2::new(-0.737_368_88, 0.675_490_29);
+const ANTUMBRA_GOLDEN: Vec2 = Vec2::new(-0.737_368_9, 0.675_490_3);
 
 /// Twin of the shader's constant: radius of the disc of [`Pcf::Disc`], texels.
 const ANTUMBRA_DISC_RADIUS: f32 = 3.0;

@@ -263,14 +263,12 @@ struct Taps {
 
 impl Taps {
     /// A box as wide as the filter, at `at` texels from the map's edge,
-    /// over texels as points that bilinear weights widen.
+    /// over texels as points that bilinear weights widen. A disc is the box of its variance; the light is a point.
     fn of(filter: Pcf, at: f64) -> Self {
         let width = match filter {
             Pcf::Point => return Self { first: at.floor() as i64, ends: [1.0, 0.0], count: 1, between: 0.0 },
-            // The ideal light is a point.
             Pcf::Hardware2x2 | Pcf::Pcss => 1,
             Pcf::Box3x3 => 3,
-            // A disc spreads as far as the box that has its variance: a radius of three is a side of 3√3.
             Pcf::Box5x5 | Pcf::Disc => 5,
             Pcf::Box7x7 => 7,
         };

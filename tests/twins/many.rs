@@ -165,7 +165,8 @@ fn case(dice: &mut Dice, frame: &ShadowFrame) -> Case {
     };
     let position = if dice.below(8) == 0 { dice.vector(50.0) } else { dice.vector(5.0) };
     let normal = if dice.below(8) == 0 { Vec3::ZERO } else { dice.vector(1.0).normalize_or(Vec3::Y) };
-    Case { position: position.extend(eye_depth), normal: normal.extend(dice.single(0.0, 1.0)) }
+    let noise = (7.3 * position.x).rem_euclid(1.0);
+    Case { position: position.extend(eye_depth), normal: normal.extend(noise) }
 }
 
 fn check(frame: &ShadowFrame, maps: &[DepthMap], case: &Case, shader: f32, tally: &mut Tally) {
