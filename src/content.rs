@@ -37,6 +37,8 @@ pub(crate) struct Place {
     pub(crate) tile: Tile,
     /// Whether texels are all of one size.
     pub(crate) uniform: bool,
+    /// Last level of the mip chain that is read.
+    pub(crate) levels: f32,
 }
 
 /// The texels of a map: a square of a layer, or all of it.
@@ -78,6 +80,8 @@ impl Content {
         let close = |a: f64, b: f64, unit: f64| (a - b).abs() <= SAME * unit;
         let depths = now.depth.iter().zip(before.depth).all(|(now, before)| close(*now, before, SAME * range));
         let same = now.uniform && before.uniform && now.axes == before.axes && now.tile == before.tile && depths;
+        // Levels that were not read may not have been made.
+        let same = same && now.levels <= before.levels;
         // The far side of the map is off by as many parts of a texel as there are texels.
         let texels = (now.texel - before.texel).abs() * f64::from(now.tile.side);
         if !same || texels.cmpgt(now.texel * SAME).any() {
@@ -109,6 +113,7 @@ mod tests {
             depth: [0.0, 50.0],
             tile: Tile::whole(0, 512),
             uniform: true,
+            levels: 0.0,
         }
     }
 
@@ -132,6 +137,7 @@ mod tests {
             Place { tile: Tile::whole(1, 512), ..place() },
             Place { tile: Tile { of: 1024, ..Tile::whole(0, 512) }, ..place() },
             Place { uniform: false, ..place() },
+            Place { levels: 1.0, ..place() },
         ] {
             assert_eq!(Content::since(&place(), &other), Content::Redraw, "{other:?}");
         }

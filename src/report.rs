@@ -20,6 +20,8 @@ pub enum Part {
     Window(u8),
     /// The border of texels around a view's window.
     Border(u8),
+    /// Smaller copies of a view's map.
+    Levels(u8),
     /// The warp of a view, or a part of its strength.
     Warp(u8),
     /// Texels of a view.
@@ -109,6 +111,11 @@ pub enum Why {
         /// Texels along a side that it has.
         side: u32,
     },
+    /// No receiver sees more than one texel in a pixel.
+    TexelsAreLarger {
+        /// Most texels over a pixel.
+        texels: f64,
+    },
     /// The format of the moments is too coarse for thin shadows: casters nearer to their receivers than this leak.
     FormatLoses {
         /// Standard deviation of depths that the format makes, share of the map's depth range.
@@ -157,6 +164,7 @@ impl fmt::Display for Part {
             Self::Stabilise(index) => write!(f, "view {index}, stabilisation"),
             Self::Window(index) => write!(f, "view {index}, window"),
             Self::Border(index) => write!(f, "view {index}, border"),
+            Self::Levels(index) => write!(f, "view {index}, mips"),
             Self::Warp(index) => write!(f, "view {index}, warp"),
             Self::Texels(index) => write!(f, "view {index}, texels"),
             Self::Penumbra(index) => write!(f, "view {index}, penumbra"),
@@ -197,6 +205,7 @@ impl fmt::Display for Why {
             }
             Self::TexelsEnough { side } => write!(f, "a side of {side} is as fine in the picture as the worst map"),
             Self::TexelsElsewhere { side } => write!(f, "a side of {side}: the rest is worth more in other maps"),
+            Self::TexelsAreLarger { texels } => write!(f, "no pixel sees more than {texels:.2} texels"),
             Self::FormatLoses { depth } => {
                 write!(f, "the format loses {:.1} % of the depth range: near contacts leak", 100.0 * depth)
             }

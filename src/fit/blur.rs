@@ -18,6 +18,9 @@ use crate::texel::{BlurUniforms, MomentFormat, MomentKind, Texel};
 /// as can be.
 const THINNEST: f64 = 1e-30;
 
+/// Below every w in view, as in the shader.
+const LEAST_W: f64 = 1e-6;
+
 /// Loss of variance, share of the depth range squared, from which a format is said to lose shadows: a standard
 /// deviation of 3 % of the range. Lower would warn of 16-bit integers, whose penumbras are a hundredth as deep.
 const MUCH_LOST: f32 = 1e-3;
@@ -32,6 +35,17 @@ pub(crate) struct Placed<'a> {
     pub(crate) light: &'a LightSpace,
     /// Size of a texel where w is 1, world units.
     pub(crate) texel: DVec2,
+    /// Vertices of the body of receivers, render space.
+    pub(crate) receivers: &'a [DVec3],
+}
+
+impl Placed<'_> {
+    /// Most texels over a pixel that any receiver sees: no less, and in uniform maps no more.
+    fn most_texels(&self, pixel: DVec4) -> f64 {
+        let at = |row: DVec4| self.receivers.iter().map(move |vertex| row.dot(vertex.extend(1.0)));
+        let least_w = at(self.rows[2]).fold(f64::INFINITY, f64::min).max(LEAST_W);
+        (at(pixel).fold(0.0, f64::max) / (least_w * least_w.sqrt())).max(f64::MIN_POSITIVE)
+    }
 }
 
 impl Fitter<'_> {
@@ -66,8 +80,9 @@ impl Fitter<'_> {
         placed: &Placed,
         texels: &Texels,
         uniforms: &mut ViewUniforms,
+        frame: &mut ShadowFrame,
     ) -> BlurUniforms {
-        let Placed { rows, across, light, texel } = *placed;
+        let Placed { rows, across, light, texel, .. } = *placed;
         // One over w: the last row of the inverse of what takes places across the light to (u w, v w, w).
         let of = |row: DVec4| DVec3::new(row.truncate().dot(light.p()), row.truncate().dot(light.q()), row.w);
         let place_from_texture = DMat3::from_cols(of(rows[0]), of(rows[1]), of(rows[2])).transpose().inverse();
@@ -83,7 +98,7 @@ impl Fitter<'_> {
             Radius::World(radius) => f64::from(radius) / texel.min_element(),
         };
         uniforms.bias[0] += (prefilter.lifted() * widest.min(f64::from(texels.kernel()))) as f32;
-        self.write_level(prefilter, texel, uniforms);
+        self.write_level(prefilter, placed, uniforms, frame);
         let corner = self.tile.corner;
         BlurUniforms {
             tile: [corner.x, corner.y, self.tile.side, self.tile.of],
@@ -98,21 +113,32 @@ impl Fitter<'_> {
         }
     }
 
-    /// Which level of the mip chain is read: texels over a pixel, linear in position for perspective views.
-    fn write_level(&self, prefilter: &Prefilter, texel: DVec2, uniforms: &mut ViewUniforms) {
+    /// Which level of the mip chain is read: texels over a pixel, linear in position for perspective views. Levels in
+    /// which no pixel sees more than a texel are left out.
+    fn write_level(
+        &self,
+        prefilter: &Prefilter,
+        placed: &Placed,
+        uniforms: &mut ViewUniforms,
+        frame: &mut ShadowFrame,
+    ) {
         let camera = &self.input.camera;
-        let pixels = camera.pixels_per_unit() * texel.element_product().sqrt();
+        let pixels = camera.pixels_per_unit() * placed.texel.element_product().sqrt();
         let pixel = if camera.projection.spreads() {
             let forward = camera.forward();
             forward.extend(forward.dot(self.input.origin - camera.eye()))
         } else {
             DVec4::W
-        };
-        let last = prefilter.moments.last_level(self.tile.of).min(self.whole_levels());
-        if last > 0 {
-            uniforms.pixel_from_render = (pixel / pixels).as_vec4().to_array();
+        } / pixels;
+        let levels = prefilter.moments.last_level(self.tile.of).min(self.whole_levels());
+        let texels = placed.most_texels(pixel);
+        let read = texels.log2().ceil().clamp(0.0, f64::from(levels)) as u32;
+        if read > 0 {
+            uniforms.pixel_from_render = pixel.as_vec4().to_array();
+        } else if levels > 0 {
+            frame.leave_out(Part::Levels(self.index), Why::TexelsAreLarger { texels });
         }
-        uniforms.moments = [prefilter.dark, last as f32, prefilter.lifted() as f32, 0.0];
+        uniforms.moments = [prefilter.dark, read as f32, prefilter.lifted() as f32, 0.0];
     }
 
     /// Last level in which the tile is whole texels: beyond it they are shared with other maps.

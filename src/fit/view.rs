@@ -151,8 +151,9 @@ impl Fitter<'_> {
         let blur = match self.encoding {
             Encoding::Depth(_) | Encoding::Soft { .. } => BlurUniforms::default(),
             Encoding::Moments(prefilter) => {
-                let placed = Placed { rows: &rows, across: bias.across().0, light, texel: bias.texel };
-                self.blur(&prefilter, &placed, texels, &mut uniforms)
+                let (across, receivers) = (bias.across().0, &body.vertices[..]);
+                let placed = Placed { rows: &rows, across, light, texel: bias.texel, receivers };
+                self.blur(&prefilter, &placed, texels, &mut uniforms, frame)
             }
         };
         if let Some(angle) = self.encoding.angle() {
@@ -177,7 +178,7 @@ impl Fitter<'_> {
             domain: extremes.domain,
             content: Content::Redraw,
             blur,
-            place: self.place(window, texel, depth),
+            place: Place { levels: uniforms.moments[1], ..self.place(window, texel, depth) },
             split: self.split,
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
@@ -227,6 +228,7 @@ impl Fitter<'_> {
             depth: [depth.near + origin.z, depth.far + origin.z],
             tile: self.tile,
             uniform: window.bend.is_none(),
+            levels: 0.0,
         }
     }
 

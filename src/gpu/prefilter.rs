@@ -178,8 +178,7 @@ impl Prefilter {
     /// Number of passes that a frame takes.
     fn passes(&self, frame: &ShadowFrame) -> usize {
         let pairs = self.moments.layers() as usize;
-        let halvings = self.maps.mip_level_count() as usize - 1;
-        pairs * (2 * frame.views.len() + halvings * layers(frame).count())
+        pairs * (2 * frame.views.len() + layers(frame).map(|layer| halvings(frame, layer)).sum::<usize>())
     }
 
     /// Fills the maps. `stamps` gives the timestamps of a pass, by its number and their count.
@@ -211,7 +210,7 @@ impl Prefilter {
         for layer in layers(frame) {
             for pair in 0..pairs {
                 let Some(levels) = self.levels.get((layer * pairs + pair) as usize) else { continue };
-                for (level, pair) in levels.windows(2).enumerate() {
+                for (level, pair) in levels.windows(2).enumerate().take(halvings(frame, layer)) {
                     let side = (self.side >> (level + 1)).max(1);
                     let (group, tile) = ((&pair[0].1, 0), [0, 0, side, side]);
                     Pass { pipeline: &self.halve, group, target: &pair[1].0, tile }.record(encoder, next());
@@ -256,6 +255,12 @@ impl Pass<'_> {
         pass.set_scissor_rect(x, y, side, side);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// How many levels of a layer are made: as many as its views read.
+fn halvings(frame: &ShadowFrame, layer: u32) -> usize {
+    let views = frame.views.iter().zip(&frame.uniforms.views).filter(|(view, _)| view.layer == layer);
+    views.map(|(_, uniforms)| uniforms.moments[1] as usize).max().unwrap_or(0)
 }
 
 /// The layers that a frame's views lie in, each once.

@@ -2,7 +2,7 @@
 
 use antumbra::gpu::{ShadowMaps, wgpu};
 use antumbra::lab::gpu::Renderer;
-use antumbra::{Aabb, FitInput, Light, MapBudget, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, techniques};
+use antumbra::{Aabb, FitInput, Light, MapBudget, Part, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, techniques};
 use glam::DVec3;
 
 use crate::stage::{SIZE, Stage, encoding, fit, tiled};
@@ -43,7 +43,7 @@ fn frames_without_views_are_not_filtered() {
         let (empty, frame) = (without_views(&remix, map), fit(&remix, map));
         let (maps, renderer) = (stage.maps(&frame), Renderer::new(&stage.gpu, frame.wgsl));
         assert_eq!(passes(&stage, &maps, &empty), 0);
-        let levels = moments.last_level(128) as usize;
+        let levels = frame.uniforms.views[0].moments[1] as usize;
         assert_eq!(passes(&stage, &maps, &frame), moments.layers() as usize * (2 + levels));
         // Never drawn; drawn; drawn before.
         let fresh = stage.maps(&frame);
@@ -61,8 +61,10 @@ fn passes_are_those_of_the_views() {
     for moments in stage.supported().filter(|moments| moments.linear) {
         let (remix, map) = tiled(encoding(moments, Radius::Texels(1.5), false), 256);
         let mut frame = fit(&remix, map);
-        let maps = stage.maps(&frame);
+        // Pixels here see few texels: all levels are read, as far away.
         let (pairs, levels) = (moments.layers() as usize, moments.last_level(256) as usize);
+        frame.uniforms.views.iter_mut().for_each(|view| view.moments[1] = levels as f32);
+        let maps = stage.maps(&frame);
         let views = frame.views.len();
         assert_eq!(passes(&stage, &maps, &frame), pairs * (2 * views + 2 * levels));
         frame.views.retain(|view| view.layer == 0);
@@ -71,7 +73,24 @@ fn passes_are_those_of_the_views() {
     }
 }
 
-/// One level without mips; with them as many as are read.
+/// No more levels are made than pixels see texels: none for a coarse map, and that is said; more, the finer the map is.
+#[test]
+fn levels_follow_the_picture() {
+    let Some(stage) = Stage::new() else { return };
+    let moments = stage.supported().find(|moments| moments.mips).expect("some have mips");
+    let remix = Remix { encoding: encoding(moments, Radius::Texels(1.5), false), ..techniques::fsm() };
+    let levels = [32, 512, 8192].map(|side| {
+        let frame = fit(&remix, MapBudget::one(side));
+        let said = frame.left_out.iter().any(|cut| cut.part == Part::Levels(0));
+        let levels = frame.uniforms.views[0].moments[1];
+        assert_eq!(said, levels == 0.0, "{side}: {:?}", frame.left_out);
+        levels
+    });
+    println!("levels of maps of 32, 512 and 8192 texels: {levels:?}");
+    assert!(levels[0] == 0.0 && levels[0] < levels[2] && levels[1] <= levels[2], "{levels:?}");
+}
+
+/// One level without mips; with them as many as there are.
 #[test]
 fn levels_are_those_that_are_read() {
     let Some(stage) = Stage::new() else { return };

@@ -8,7 +8,7 @@ use antumbra::{MapBudget, MapShape, MomentKind, Moments, Radius, Remix, ShadowFr
 use glam::Vec4;
 
 use crate::bound::{bound, differs, largest_within, texels};
-use crate::stage::{Stage, encoding, fit, tiled};
+use crate::stage::{Stage, encoding, fit, with_levels, tiled};
 
 /// Side of a layer, texels.
 const SIDE: u32 = 128;
@@ -115,7 +115,7 @@ fn passes_agree_with_memory() {
             let (maps, renderer) = (stage.maps(&first), Renderer::new(&stage.gpu, first.wgsl));
             for radius in RADII {
                 for bell in [false, true] {
-                    let frame = fit(&Remix { guard: false, ..remix(radius, bell) }, map);
+                    let frame = with_levels(*moments, fit(&Remix { guard: false, ..remix(radius, bell) }, map));
                     let bent = frame.wgsl.shape != MapShape::Affine;
                     assert_eq!(frame.views[0].warp_strength > 0.1, bent, "{}", frame.views[0].warp_strength);
                     stage.draw(&renderer, &frame, &maps);
@@ -127,7 +127,7 @@ fn passes_agree_with_memory() {
     }
     for moments in all.into_iter().filter(|moments| !formats.contains(moments)) {
         let remix = Remix { encoding: encoding(moments, RADII[1], false), ..techniques::fsm() };
-        let frame = fit(&remix, map);
+        let frame = with_levels(moments, fit(&remix, map));
         let maps = stage.maps(&frame);
         stage.draw(&Renderer::new(&stage.gpu, frame.wgsl), &frame, &maps);
         compare(&stage, moments, &frame, &maps);
@@ -144,7 +144,7 @@ fn passes_agree_in_tiles() {
         let mut worst = 0.0_f32;
         for (radius, bell) in [(Radius::Texels(1.5), false), (Radius::World(0.3), true)] {
             let (remix, map) = tiled(encoding(moments, radius, bell), SIDE);
-            let frame = fit(&remix, map);
+            let frame = with_levels(moments, fit(&remix, map));
             let small = frame.views.iter().filter(|view| view.blur.tile[2] < SIDE).count();
             assert!(frame.views.len() >= 4 && small >= 3, "{:?}", frame.left_out);
             let maps = stage.maps(&frame);

@@ -80,6 +80,13 @@ pub(crate) fn fit(remix: &Remix, map: MapBudget) -> ShadowFrame {
     fit_to(remix, support::camera(SIZE), map)
 }
 
+/// A frame that reads all levels there are, whatever the picture asks for.
+pub(crate) fn with_levels(moments: Moments, mut frame: ShadowFrame) -> ShadowFrame {
+    let last = moments.last_level(frame.map.side) as f32;
+    frame.uniforms.views.iter_mut().for_each(|view| view.moments[1] = last);
+    frame
+}
+
 /// The same, for a camera.
 pub(crate) fn fit_to(remix: &Remix, camera: Camera, map: MapBudget) -> ShadowFrame {
     let scene = Scene::within(support::bounds(&support::boxes()));
