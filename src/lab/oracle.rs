@@ -315,14 +315,11 @@ pub fn placed_elsewhere(frame: &ShadowFrame, texels: DVec2) -> ShadowFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encoding::stage::Encoding;
     use crate::lab::case::CaseCamera;
     use crate::lab::metrics::Scores;
     use crate::lab::scene::SceneModel;
     use crate::lab::subject::Subject;
-    use crate::remix::Remix;
-    use crate::technique::ShadowTechnique;
-    use crate::techniques;
+    use crate::{encoding::stage::Encoding, remix::Remix, technique::ShadowTechnique, techniques};
 
     impl Compare {
         const ALL: [Self; 3] = [Self::Plane, Self::Nearer, Self::Surface];
