@@ -2,7 +2,9 @@
 
 use antumbra::gpu::{ShadowMaps, wgpu};
 use antumbra::lab::gpu::Renderer;
-use antumbra::{Aabb, FitInput, Light, MapBudget, Part, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, techniques};
+use antumbra::{
+    Aabb, FitInput, Light, MapBudget, Part, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, techniques,
+};
 use glam::DVec3;
 
 use crate::stage::{SIZE, Stage, encoding, fit, tiled};

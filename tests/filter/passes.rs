@@ -8,7 +8,7 @@ use antumbra::{MapBudget, MapShape, MomentKind, Moments, Radius, Remix, ShadowFr
 use glam::Vec4;
 
 use crate::bound::{bound, differs, largest_within, texels};
-use crate::stage::{Stage, encoding, fit, with_levels, tiled};
+use crate::stage::{Stage, encoding, fit, tiled, with_levels};
 
 /// Side of a layer, texels.
 const SIDE: u32 = 128;

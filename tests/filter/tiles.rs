@@ -7,9 +7,9 @@ use antumbra::lab::cpu::{self, Visible};
 use antumbra::lab::gpu::{Renderer, read_moments};
 use antumbra::lab::subject::{Setting, Subject};
 use antumbra::{DepthRange, Light, MomentFormat, MomentKind, Moments, Radius, ShadowFrame};
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 
-use crate::stage::{SIZE, Stage, encoding, filtered, fit, kinds, tiled};
+use crate::stage::{SIZE, Stage, encoding, filtered, fit, fit_to, kinds, tiled};
 use crate::support;
 
 /// Side of a layer, texels: the smallest tiles are 32.
@@ -182,7 +182,8 @@ fn levels_end_where_tiles_do() {
     for side in [SIDE, 512, 250, 1000, 100] {
         let moments = Moments::new(MomentKind::Variance, MomentFormat::Float16).read(true, true);
         let (remix, map) = tiled(encoding(moments, Radius::Texels(1.5), false), side);
-        let frame = fit(&remix, map);
+        // A picture of few pixels, which see many texels.
+        let frame = fit_to(&remix, support::camera(UVec2::new(4, 3)), map);
         for (view, uniforms) in frame.views.iter().zip(&frame.uniforms.views) {
             let [left, top, tile, of] = view.blur.tile;
             let last = uniforms.moments[1] as u32;
