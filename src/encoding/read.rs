@@ -62,9 +62,7 @@ pub fn antumbra_read(moments: Moments, stored: Vec4, depth: f32, slope: Vec2) ->
     let exponents = moments.exponents().into();
     let blur = || moments.blur() + 0.5 * slope.length();
     match moments.kind() {
-        MomentKind::Variance => {
-            antumbra_variance_lit(two(), depth, moments.variance_loss() + 0.25 * slope.dot(slope))
-        }
+        MomentKind::Variance => antumbra_variance_lit(two(), depth, moments.variance_loss() + 0.25 * slope.dot(slope)),
         MomentKind::Exponential => antumbra_exponential_lit(stored.x, depth, moments.exponent()),
         MomentKind::ExponentialVarianceTwo => {
             antumbra_exponential_variance_lit_two(stored.xy(), depth, exponents, blur())

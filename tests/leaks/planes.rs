@@ -101,7 +101,12 @@ impl Filtered {
         let place = |index: u32| (f64::from(index) / f64::from(POINTS - 1) * 2.0 - 1.0) * (HALF - 2.0 * reach);
         let places = (0..POINTS * POINTS).map(|index| DVec2::new(place(index % POINTS), place(index / POINTS)));
         let on_plane = places.map(|place| plane.at(place)).filter(|point| point.y.abs() <= room);
-        Self { drawn, normal: plane.normal.as_vec3(), points: on_plane.map(|point| point.as_vec3()).collect(), unlifted }
+        Self {
+            drawn,
+            normal: plane.normal.as_vec3(),
+            points: on_plane.map(|point| point.as_vec3()).collect(),
+            unlifted,
+        }
     }
 
     /// Mean shadow where there is none.
@@ -159,7 +164,9 @@ fn cell(moments: Moments, slope: f64, radius: f32) -> Cell {
 
 #[test]
 fn planes_under_wide_blurs_do_not_shade_themselves() {
-    println!("Shadow on planes that have none, % of the light: as lifted / not lifted for the blur / needed lift, share of the radius.");
+    println!(
+        "Shadow on planes that have none, % of the light: as lifted / not lifted for the blur / needed lift, share of the radius."
+    );
     let mut broken = Vec::new();
     for (name, kind, format) in formats() {
         println!("\n| {name} | {} |", RADII.map(|radius| format!("radius {radius}")).join(" | "));
@@ -167,7 +174,9 @@ fn planes_under_wide_blurs_do_not_shade_themselves() {
             let moments = Moments::new(kind, format);
             let cells: Vec<Cell> = RADII.par_iter().map(|radius| cell(moments, slope, *radius)).collect();
             let say = |cell: &Cell| {
-                if cell.points == 0 { return "-".to_owned(); }
+                if cell.points == 0 {
+                    return "-".to_owned();
+                }
                 format!("{:.3} / {:.3} / {:.3}", 100.0 * cell.shadow, 100.0 * cell.unlifted, cell.needed)
             };
             println!("| {slope} | {} |", cells.iter().map(say).collect::<Vec<_>>().join(" | "));
@@ -196,7 +205,8 @@ fn planes_in_small_levels_do_not_shade_themselves() {
                 let moments = Moments::new(kind, format);
                 let moments = moments.read(moments.linear, true);
                 let width = f64::from(level).exp2();
-                let mut filtered = Filtered::new(&Plane::new(slope, 45.0), moments, 1.5, 2.0 * f64::from(level.ceil()).exp2());
+                let mut filtered =
+                    Filtered::new(&Plane::new(slope, 45.0), moments, 1.5, 2.0 * f64::from(level.ceil()).exp2());
                 filtered.drawn.frame.uniforms.views[0].pixel_from_render = [0.0, 0.0, 0.0, width as f32];
                 filtered.shadow()
             });

@@ -12,9 +12,7 @@ const CASTER: f32 = 0.3;
 
 /// The series before it is clamped, behind a caster, with so many terms.
 fn series(terms: u32, behind: f32) -> f32 {
-    let part = |term| {
-        antumbra_convolution_part(antumbra_convolution_terms(CASTER, term), CASTER + behind, term)
-    };
+    let part = |term| antumbra_convolution_part(antumbra_convolution_terms(CASTER, term), CASTER + behind, term);
     (0..terms).step_by(2).fold(0.5, |sum, term| sum + part(term))
 }
 
@@ -44,7 +42,9 @@ fn contacts_leak_and_series_ring() {
     for kind in MomentKind::ALL {
         println!("| {} | {} |", kind.name(), distances.map(|d| format!("{:.2}", 100.0 * lit(kind, d))).join(" | "));
     }
-    println!("\nThe series before it is clamped: overshoot in front, at a distance in % of the range; greatest light of the lobes behind.");
+    println!(
+        "\nThe series before it is clamped: overshoot in front, at a distance in % of the range; greatest light of the lobes behind."
+    );
     println!("| terms | overshoot, % | at | bytes | lit, % | at |\n|--:|--:|--:|--:|--:|--:|");
     for terms in [2, 4, 8, 16] {
         let (over, at) = most(|d| series(terms, -d), 0.0, 0.25);
@@ -53,7 +53,11 @@ fn contacts_leak_and_series_ring() {
         let (ring, ring_at) = most(|d| antumbra_convolution_lit(series(terms, d)), first, 0.6);
         println!(
             "| {terms} | {:.2} | {:.2} | {} | {:.2} | {:.1} |",
-            100.0 * (over - 1.0), 100.0 * at, 2 * terms, 100.0 * ring, 100.0 * ring_at
+            100.0 * (over - 1.0),
+            100.0 * at,
+            2 * terms,
+            100.0 * ring,
+            100.0 * ring_at
         );
         assert!((over - 1.0897).abs() < 0.02, "{terms} terms overshoot to {over}");
         let half_period = 0.5 / terms as f32 / ANTUMBRA_CONVOLUTION_RANGE;
