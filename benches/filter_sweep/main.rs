@@ -85,7 +85,10 @@ fn main() -> Result<(), String> {
     write_whole(&folder.join("sweep.csv"), csv(&bench.records).as_bytes())?;
     let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
     let meta = [
-        ("command", format!("{scenes}cargo bench --bench filter_sweep")),
+        (
+            "command",
+            format!("{scenes}cargo {} --bench filter_sweep", if cfg!(debug_assertions) { "test" } else { "bench" }),
+        ),
         ("commit", cli::commit()),
         ("adapter", gpu.adapter().to_owned()),
         ("date", cli::now()),

@@ -318,7 +318,8 @@ mod tests {
     use crate::lab::metrics::Scores;
     use crate::lab::scene::SceneModel;
     use crate::lab::subject::Subject;
-    use crate::remix::{Encoding, Remix};
+    use crate::encoding::stage::Encoding;
+    use crate::remix::Remix;
     use crate::technique::ShadowTechnique;
     use crate::techniques;
 
