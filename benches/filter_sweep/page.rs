@@ -25,7 +25,8 @@ One focused map of 1024 texels, a box of so many texels everywhere, no mips, no 
 penumbra without the loss, and *from PCF* is the root mean square distance from its picture (over valid pixels, 0 to 1). *Filter*,
 *receivers* and *total* are milliseconds of the adapter, medians of turns, mean over cases; *÷ PCF* is the total over PCF's, geometric
 mean. *Excess* is the mean absolute error against the area truth above that of a perfect hard edge, %: wide filters soften what the truth
-has hard, PCF as well. *Leak* and *false*: pixels more than half wrong away from edges, %.
+has hard, PCF as well. *Leak* and *false*: pixels more than half wrong away from edges, %. Moments err towards light: their *excess* is low
+also because they leak where a wide PCF shades too much. Read *leak* and *from PCF* beside it.
 ";
 
 fn of<'a>(records: &'a [Record], width: u32, name: &str) -> Vec<&'a Record> {
