@@ -319,7 +319,10 @@ mod tests {
     use crate::lab::metrics::Scores;
     use crate::lab::scene::SceneModel;
     use crate::lab::subject::Subject;
-    use crate::{encoding::stage::Encoding, remix::Remix, technique::ShadowTechnique, techniques};
+    use crate::encoding::stage::Encoding;
+    use crate::remix::Remix;
+    use crate::technique::ShadowTechnique;
+    use crate::techniques;
 
     impl Compare {
         const ALL: [Self; 3] = [Self::Plane, Self::Nearer, Self::Surface];

@@ -12,8 +12,12 @@ use antumbra::encoding::moments::{
     antumbra_moments_lit, antumbra_moments_lit_within, antumbra_moments_packed, antumbra_moments_roots,
     antumbra_moments_unpacked,
 };
+use antumbra::encoding::read::antumbra_store;
 use antumbra::encoding::variance::{antumbra_darkened, antumbra_variance_lit};
-use antumbra::{Aabb, Camera, Encoding, FitInput, Light, MapBudget, Pcf, Remix, Scene, ShadowTechnique, techniques};
+use antumbra::{
+    Aabb, CONVOLUTION_TERMS, Camera, Encoding, FitInput, Light, MapBudget, MomentFormat, Moments, Pcf, Remix, Scene,
+    ShadowTechnique, techniques,
+};
 use glam::{DVec3, Vec2, Vec4};
 
 use crate::sets::Set;
@@ -155,4 +159,20 @@ fn packed_moments_come_back() {
         worst = worst.max((antumbra_moments_unpacked(packed) - b).abs().max_element());
     }
     assert!(worst < 1e-6, "{worst}");
+}
+
+/// Integers hold no less than 0 and no more than 1: what is stored of any depth is within them.
+#[test]
+fn integers_hold_what_is_stored() {
+    let integers = |moments: &Moments| matches!(moments.format(), MomentFormat::Unorm16 | MomentFormat::Unorm8);
+    for moments in Moments::all().filter(integers) {
+        for step in 0..=1000 {
+            let depth = step as f32 / 1000.0;
+            for term in (0..CONVOLUTION_TERMS).step_by(2) {
+                let stored = antumbra_store(moments, depth, term);
+                let held = stored.clamp(Vec4::splat(-1e-6), Vec4::splat(1.0 + 1e-6));
+                assert_eq!(stored, held, "{moments:?} at {depth}");
+            }
+        }
+    }
 }

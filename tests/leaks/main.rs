@@ -2,6 +2,7 @@
 
 mod drawn;
 mod encodings;
+mod fence;
 mod planes;
 mod section;
 mod stack;

@@ -26,6 +26,9 @@ const REACH: usize = 7;
 /// Most that four moments, and two exponentials, may leave of what two moments leak.
 const MOST: f64 = 0.25;
 
+/// Most that 16-bit integers may leak beyond 32 bits, a factor.
+const AS_MUCH: f64 = 1.5;
+
 /// What a picture shows that is not there, away from edges, means over the valid pixels.
 #[derive(Clone, Copy)]
 struct Found {
@@ -121,12 +124,17 @@ fn overlapping_cards_leak_less_with_more_moments() {
             leaks.push((kind, format, dark, found.leak));
         }
     }
-    let of = |kind| {
-        let same = |(k, f, d, _): &&(_, _, _, _)| (*k, *f, *d) == (kind, MomentFormat::Float32, 0.0);
+    let in_format = |kind, format| {
+        let same = |(k, f, d, _): &&(_, _, _, _)| (*k, *f, *d) == (kind, format, 0.0);
         leaks.iter().find(same).expect("measured").3
     };
+    let of = |kind| in_format(kind, MomentFormat::Float32);
     let two = of(MomentKind::Variance);
     for kind in [MomentKind::ExponentialVarianceFour, MomentKind::Hamburger, MomentKind::Hausdorff] {
         assert!(of(kind) <= MOST * two, "{}: {} of {two}", kind.name(), of(kind));
+    } // Integers of 16 bits hold as much.
+    for kind in [MomentKind::Variance, MomentKind::Hamburger, MomentKind::Hausdorff] {
+        let (less, more) = (in_format(kind, MomentFormat::Unorm16), of(kind));
+        assert!(less <= AS_MUCH * more, "{}: {less} of {more}", kind.name());
     }
 }

@@ -148,8 +148,21 @@ pub(super) fn receivers(gpu: &Gpu, key: WgslKey) -> Pair {
 
 /// The library's receivers in any host.
 pub(super) fn library_receivers(gpu: &Gpu, key: WgslKey, host: Host) -> Pair {
+    receivers_of(gpu, key, host, &wgsl::module(key, Bindings { group: 1, first: 0 }))
+}
+
+/// The library's receivers for a map that is looked up with [`Pcf::Box5x5`], with a box of `taps` bilinear taps to an
+/// axis in its place: 2 `taps` − 1 texels wide.
+pub(super) fn wide_receivers(gpu: &Gpu, key: WgslKey, taps: u32) -> Pair {
+    const FIVE: &str = include_str!("../../../shaders/pcf_box_five.wgsl");
+    let any = format!("const BOX_TAPS: i32 = {taps};\n{}", include_str!("pcf_box_any.wgsl"));
+    let module = wgsl::module(key, Bindings { group: 1, first: 0 }).replacen(FIVE, &any, 1);
+    receivers_of(gpu, key, Host::Whole, &module)
+}
+
+fn receivers_of(gpu: &Gpu, key: WgslKey, host: Host, module: &str) -> Pair {
     let placed = if key.has_two_stages() { include_str!("light_placed.wgsl") } else { "" };
-    let text = [&wgsl::module(key, Bindings { group: 1, first: 0 }), include_str!("light_whole.wgsl"), placed].concat();
+    let text = [module, include_str!("light_whole.wgsl"), placed].concat();
     let maps = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("maps"),
         entries: &gpu::layout_entries(key, 0, wgpu::ShaderStages::VERTEX_FRAGMENT),

@@ -62,6 +62,17 @@ impl Renderer {
         }
     }
 
+    /// The same for a key with [`Pcf::Box5x5`](crate::Pcf::Box5x5), whose box is made `taps` bilinear taps to an axis wide,
+    /// 2 `taps` − 1 texels: the yardstick of wide filters, as an engine writes it. Other keys stay as they are.
+    #[must_use]
+    pub fn with_box(gpu: &Gpu, key: WgslKey, taps: u32) -> Self {
+        let renderer = Self::new(gpu, key);
+        if key.filter != crate::frame::Pcf::Box5x5 {
+            return renderer;
+        }
+        Self { receivers: pipelines::wide_receivers(gpu, key, taps), ..renderer }
+    }
+
     /// The key it was compiled for.
     #[must_use]
     pub fn key(&self) -> WgslKey {
