@@ -1,7 +1,7 @@
 //! What a map is looked up for, where receivers are found by containment: what it holds and no map before it does.
 
 use arrayvec::ArrayVec;
-use glam::{DVec3, DVec4};
+use glam::{DVec3, Mat4, Vec4};
 
 use crate::frame::{MAX_VIEWS, Select, ShadowFrame, ViewUniforms};
 
@@ -9,7 +9,7 @@ use crate::frame::{MAX_VIEWS, Select, ShadowFrame, ViewUniforms};
 pub(crate) struct Held {
     /// Half-spaces of render space for each map: its four sides, and the end of its depths. A point in all of them is
     /// looked up there (`antumbra_room`).
-    maps: ArrayVec<[DVec4; 5], MAX_VIEWS>,
+    maps: ArrayVec<(Mat4, Vec4), MAX_VIEWS>,
 }
 
 impl Held {
@@ -22,22 +22,17 @@ impl Held {
 
     /// Whether one of them holds a point of render space.
     pub(crate) fn holds(&self, at: DVec3) -> bool {
-        let at = at.extend(1.0);
-        self.maps.iter().any(|sides| sides.iter().all(|side| side.dot(at) >= 0.0))
+        let at = at.as_vec3().extend(1.0);
+        self.maps.iter().any(|(sides, end)| (*sides * at).cmpge(Vec4::ZERO).all() && end.dot(at) >= 0.0)
     }
 }
 
-/// Before the horizon, w > 0, because each side is positive by itself: two that are opposite are not both beyond it.
-fn half_spaces(view: &ViewUniforms) -> [DVec4; 5] {
-    let row = |row: [f32; 4]| DVec4::from_array(row.map(f64::from));
+/// A point within two opposite sides is before the horizon, because maps are wider than their filters.
+fn half_spaces(view: &ViewUniforms) -> (Mat4, Vec4) {
+    let row = Vec4::from_array;
     let (u, v, w) = (row(view.u_from_render), row(view.v_from_render), row(view.w_from_render));
-    let [left, top, right, bottom] = view.rect.map(f64::from);
-    let room = f64::from(view.domain[2]);
-    [
-        u - w * (left + room),
-        w * (right - room) - u,
-        v - w * (top + room),
-        w * (bottom - room) - v,
-        DVec4::W - row(view.depth_from_render),
-    ]
+    let ([left, top, right, bottom], room) = (view.rect, view.domain[2]);
+    let [left, right] = [u - w * (left + room), w * (right - room) - u];
+    let [top, bottom] = [v - w * (top + room), w * (bottom - room) - v];
+    (Mat4::from_cols(left, right, top, bottom).transpose(), Vec4::W - row(view.depth_from_render))
 }
