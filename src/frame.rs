@@ -7,7 +7,6 @@ use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 use crate::content::{Content, Place};
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
-use crate::split::depth::MAX_PLANES;
 use crate::texel::{BlurUniforms, Texel};
 
 /// Most views of one light.
@@ -158,7 +157,7 @@ pub struct ShadowFrame {
     pub predicted: Footprint,
     /// Eye depths of the planes that were searched for, ends included, world units, ascending: the next frame may keep
     /// them. None where nothing was searched.
-    pub(crate) planes: ArrayVec<f64, MAX_PLANES>,
+    pub(crate) planes: ArrayVec<f64, { MAX_VIEWS + 1 }>,
 }
 
 impl ShadowFrame {

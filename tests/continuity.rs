@@ -4,7 +4,7 @@ mod common;
 
 use antumbra::{
     Aabb, Camera, DepthSplits, FitInput, Light, MapBudget, Remix, Scene, ShadowFrame, ShadowTechnique, Split,
-    Stabilise, techniques,
+    Stabilise, Warp, techniques,
 };
 use common::dice::Dice;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4Swizzles};
@@ -221,10 +221,10 @@ fn warped_maps_are_continuous() {
             found.not_halved
         );
         assert!(found.paths > 900);
-        match *name {
+        match technique().warp {
             // A focused window gives way to the scene's where that is hardly larger: a switch, for maps that can be
             // kept.
-            "fsm" => assert!(found.jumps.len() <= MOST_SWITCHES, "{name}: {:?}", found.jumps),
+            Warp::Focused => assert!(found.jumps.len() <= MOST_SWITCHES, "{name}: {:?}", found.jumps),
             _ => assert!(found.jumps.len() <= MOST_VALLEYS, "{name} jumps on paths {:?}", found.jumps),
         }
     }
