@@ -206,7 +206,7 @@ pub struct ShadowFrame {
     pub predicted: Footprint,
     /// Eye depths of the planes that were searched for, ends included, world units, ascending: the next frame may keep
     /// them. None where nothing was searched.
-    pub(crate) planes: ArrayVec<f64, MAX_PLANES>,
+    pub(crate) planes: ArrayVec<f64, { MAX_VIEWS + 1 }>,
 }
 
 impl ShadowFrame {

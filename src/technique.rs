@@ -23,7 +23,8 @@ pub struct FitInput<'a> {
     /// large ones the eye, or whatever the engine subtracts before it narrows positions to f32.
     pub origin: DVec3,
     /// Last frame of the same light: history is an input. Read for [`ShadowView::content`](crate::ShadowView::content),
-    /// and so that maps keep their sizes where [`Share`](crate::Share) gives them different ones.
+    /// and so that maps keep their sizes where [`Share`](crate::Share) gives them different ones, and their depths
+    /// where [`Scheme::EqualError`](crate::Scheme::EqualError) chooses them.
     pub previous: Option<&'a ShadowFrame>,
 }
 

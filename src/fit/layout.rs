@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::fit::depth_range::{rounding, rounding_margin};
+use crate::fit::served::Held;
 use crate::fit::share::Share;
 use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::Fitter;
@@ -144,7 +145,10 @@ impl Fitter<'_> {
         let sight = Sight::of(camera, self.travel, &body.vertices, origin);
         let margin_of_casters = self.margin_of_casters(body);
         let limit = |around: &WarpFrame| self.strongest(around, &sight, margin, margin_of_casters);
-        let seen = Seen::of(camera, body, &sight, self.input.scene.visible_points, origin);
+        let before = Held::by(frame);
+        let held = before.as_ref().map(|before| |place: DVec3| before.holds(place));
+        let held = held.as_ref().map(|held| held as &dyn Fn(DVec3) -> bool);
+        let [seen, served] = Seen::of(camera, body, &sight, self.input.scene.visible_points, origin, held);
         let choice = match warp {
             Warp::Uniform | Warp::Focused => Choice { frame: sight.frame, strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame_along(sight.view), strength: f64::from(strength) },
@@ -154,7 +158,12 @@ impl Fitter<'_> {
             Warp::Minimax => minimax::choose(&sight, limit(&sight.frame)),
             Warp::LeastError => {
                 let frame = sight.frame_along(seen.axis(&sight));
-                Choice { frame, strength: Predictor::along(&frame, &seen, &sight).least(limit(&frame)) }
+                let [own, all] = [&seen, &served].map(|seen| Predictor::along(&frame, seen, &sight));
+                let limit = limit(&frame);
+                Choice {
+                    frame,
+                    strength: if served == seen { own.least(limit) } else { own.least_sparing(&all, limit) },
+                }
             }
         };
         let (around, limit, asked) = (choice.frame, limit(&choice.frame), choice.strength);

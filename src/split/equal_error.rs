@@ -11,7 +11,13 @@
 //! ```
 //!
 //! Moving one plane changes two summands, and each plane in turn is moved to where their sum is least, a few times
-//! over. The planes follow the camera continuously as long as the valley they are in does.
+//! over.
+//!
+//! The sum is flat: planes move far for little, and two valleys can be equally deep. On 100 smooth paths of 64 steps,
+//! one of the planes of four slices moves by more than 10 % in 3.0 % of the steps (7.6 % with samples), mostly at one
+//! point of time; the least sum of all sets of planes, instead of a local one, leaps nearly as often. Where the frame
+//! before is given, its planes stay until others are 5 % better: 0.8 % of the steps (1.5 %), for 0.5 % of the sum.
+//! Where none is given they may leap.
 //!
 //! # What it leaves out
 //! - The warp, which takes more from some slices than from others, and that receivers just behind a plane are still
@@ -20,11 +26,6 @@
 //!   no fewer wrong pixels than these. Both together, looked up sample by sample, have 3 to 6 % fewer where samples are
 //!   given, for hundreds of fits a picture, and as many where none are; whatever costs a few flops a slice gains on one
 //!   set of pictures and loses on the other.
-//! - What came before. The sum is flat: planes move far for little, and two valleys can be equally deep. On 100
-//!   smooth paths of 64 steps, one of the planes of four slices moves by more than 10 % in 3.1 % of the steps (8.3 %
-//!   with samples), mostly at one point of time (2.6 %, 6.3 %). The least sum of all sets of planes, instead of a local
-//!   one, leaps nearly as often. Planes that stay until others are 5 % better would move so far in a third to a fifth
-//!   of those steps, for 0.6 % of the sum; but a fit would depend on those before it.
 //!
 //! # References
 //! - Lauritzen, Salvi & Lefohn, *Sample distribution shadow maps*, 2011: splits from what is seen.
