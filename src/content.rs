@@ -41,6 +41,19 @@ pub(crate) struct Place {
     pub(crate) levels: f32,
 }
 
+impl Place {
+    /// Of a map that is drawn anew in every frame.
+    pub(crate) const UNKNOWN: Self = Self {
+        axes: [DVec3::ZERO; 3],
+        texel: DVec2::ZERO,
+        low: DVec2::ZERO,
+        depth: [0.0; 2],
+        tile: Tile::whole(0, 0),
+        uniform: false,
+        levels: 0.0,
+    };
+}
+
 /// The texels of a map: a square of a layer, or all of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tile {

@@ -210,8 +210,10 @@ pub struct ShadowFrame {
 }
 
 impl ShadowFrame {
-    /// A frame in which nothing is shadowed yet: everything reads lit.
-    pub(crate) fn lit(wgsl: WgslKey, map: MapBudget) -> Self {
+    /// A frame in which nothing is shadowed yet: everything reads lit. Techniques from outside of this crate add views
+    /// ([`ShadowView::new`]) and fill in their uniforms.
+    #[must_use]
+    pub fn lit(wgsl: WgslKey, map: MapBudget) -> Self {
         Self {
             views: ArrayVec::new(),
             uniforms: ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] },
@@ -269,6 +271,28 @@ pub struct ShadowView {
     pub(crate) split: u8,
 }
 
+impl ShadowView {
+    /// A view as techniques from outside of this crate make it; all other fields say nothing, and may be filled in.
+    /// `clip_from_render` and `depth_from_render` are as documented there.
+    #[must_use]
+    pub fn new(clip_from_render: Mat4, depth_from_render: Vec4, viewport: UVec4, layer: u32, cull: CullVolume) -> Self {
+        Self {
+            clip_from_render,
+            depth_from_render,
+            viewport,
+            layer,
+            cull,
+            texel: TexelSize { world: [0.0; 2], pixels: Footprint::NONE },
+            warp_strength: 0.0,
+            domain: [0.0, f32::MAX],
+            content: Content::Redraw,
+            blur: BlurUniforms::default(),
+            place: Place::UNKNOWN,
+            split: 0,
+        }
+    }
+}
+
 /// Size of a view's texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelSize {
@@ -308,6 +332,13 @@ pub struct CullVolume {
 }
 
 impl CullVolume {
+    /// The half-spaces `dot(plane, (x, y, z, 1)) >= 0` of render space around `origin`, of which at most
+    /// [`MAX_CULL_PLANES`] are kept: fewer keep more casters.
+    #[must_use]
+    pub fn new(origin: DVec3, planes: &[DVec4]) -> Self {
+        Self { origin, planes: planes.iter().copied().take(MAX_CULL_PLANES).collect() }
+    }
+
     /// False only if nothing within `bounds` (world space) can throw a shadow that the view shows.
     ///
     /// Conservative: exact for each plane of the volume alone. O(planes).

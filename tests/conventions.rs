@@ -1,7 +1,10 @@
 //! The table of conventions in `lib.rs`, a test per row: each pushes a point through.
 
-use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Scene, ShadowFrame, ShadowTechnique, techniques};
-use glam::{DVec3, DVec4, Vec2, Vec3, Vec4, Vec4Swizzles};
+use antumbra::{
+    Aabb, Camera, Content, CullVolume, FitError, FitInput, Light, MapBudget, Scene, ShadowFrame, ShadowTechnique,
+    ShadowView, WgslKey, techniques,
+};
+use glam::{DMat4, DVec3, DVec4, Mat4, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 const TRAVEL: DVec3 = DVec3::new(0.6, -0.8, 0.0);
 
@@ -155,4 +158,44 @@ fn narrowed_once_relative_to_origin() {
     {
         assert!((a - b).abs() <= 1e-6 * (1.0 + a.abs()), "{a} {b}");
     }
+}
+
+/// A technique from outside of the crate: one map that an engine has laid itself, made of what is public alone.
+struct Outside;
+
+impl ShadowTechnique for Outside {
+    fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {
+        let mut frame = ShadowFrame::lit(self.wgsl_key(), input.map);
+        let clip_from_render = Mat4::from_scale(Vec3::splat(0.1));
+        let cull = CullVolume::new(input.origin, &[DVec4::new(0.0, 1.0, 0.0, 10.0)]);
+        let viewport = UVec4::new(1, 1, input.map.side - 2, input.map.side - 2);
+        frame.views.push(ShadowView::new(clip_from_render, clip_from_render.row(2), viewport, 0, cull));
+        frame.uniforms.views[0].u_from_render = [0.05, 0.0, 0.0, 0.5];
+        frame.uniforms.counts[0] = 1;
+        Ok(frame)
+    }
+
+    fn wgsl_key(&self) -> WgslKey {
+        WgslKey::default()
+    }
+}
+
+#[test]
+fn anyone_can_implement_a_technique() {
+    let technique: &dyn ShadowTechnique = &Outside;
+    let input = FitInput {
+        camera: Camera::perspective(DMat4::IDENTITY, 1.0, 1.0, 0.1, 100.0),
+        light: Light::Directional { travel: DVec3::NEG_Y },
+        scene: Scene::within(Aabb::new(DVec3::splat(-9.0), DVec3::splat(9.0))),
+        map: MapBudget::one(64),
+        origin: DVec3::ZERO,
+        previous: None,
+    };
+    let first = technique.fit(&input).unwrap();
+    assert!(first.views[0].cull.may_cast(&Aabb::new(DVec3::splat(-1.0), DVec3::splat(1.0))));
+    assert!(!first.views[0].cull.may_cast(&Aabb::new(DVec3::splat(-30.0), DVec3::splat(-20.0))));
+    // It may be the history of another one, which draws its own map.
+    let next = techniques::fsm().fit(&FitInput { previous: Some(&first), ..input }).unwrap();
+    assert_eq!(next.views[0].content, Content::Redraw);
+    assert_eq!(next.views[0].viewport, first.views[0].viewport);
 }

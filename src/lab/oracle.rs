@@ -315,11 +315,11 @@ pub fn placed_elsewhere(frame: &ShadowFrame, texels: DVec2) -> ShadowFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::encoding::stage::Encoding;
     use crate::lab::case::CaseCamera;
     use crate::lab::metrics::Scores;
     use crate::lab::scene::SceneModel;
     use crate::lab::subject::Subject;
-    use crate::encoding::stage::Encoding;
     use crate::remix::Remix;
     use crate::technique::ShadowTechnique;
     use crate::techniques;

@@ -142,9 +142,10 @@ fn layers_are_maps() {
             });
             assert!(layers == alone && layers[0] != layers[1], "{:?}", frame.wgsl);
             let more = several(&parts, 4, way);
-            let fewer_layers = ShadowFrame { map: MapBudget { layers: 2, ..more.map }, ..more.clone() };
-            for frame in [more, fewer_layers] {
-                let (same, maps) = draw(&stage, camera, &frame);
+            let mut fewer_layers = more.clone();
+            fewer_layers.map.layers = 2;
+            for frame in [&more, &fewer_layers] {
+                let (same, maps) = draw(&stage, camera, frame);
                 assert_eq!(maps.layers(), frame.map.layers);
                 assert!(same == mask, "{:?}", frame.wgsl);
             }
@@ -196,7 +197,8 @@ fn several_maps_refuse_misfits() {
     let maps = maps_of(&stage, &frame);
     let refused = |frame: &ShadowFrame| maps.prepare(stage.gpu.queue(), frame).unwrap_err();
     // Another number of maps is another text.
-    let other = ShadowFrame { wgsl: WgslKey { maps: 3, ..frame.wgsl }, ..frame.clone() };
+    let mut other = frame.clone();
+    other.wgsl.maps = 3;
     assert!(matches!(refused(&other), GpuError::Key { .. }));
     // A layer too far, and a view too many.
     let mut beyond = frame.clone();
