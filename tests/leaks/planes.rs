@@ -46,7 +46,7 @@ impl Plane {
         let model = SceneModel {
             positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
-            objects: vec![0..2],
+            objects: core::iter::once(0..2).collect(),
             ..SceneModel::default()
         };
         Self { model, normal }
@@ -58,7 +58,7 @@ impl Plane {
         DVec3::new(place.x, height, place.y)
     }
 
-    fn input(&self) -> FitInput<'_> {
+    fn input() -> FitInput<'static> {
         let bounds = Aabb::new(DVec3::splat(-HALF), DVec3::splat(HALF));
         let eye = DVec3::new(1.0, 12.0, 18.0);
         FitInput {
@@ -91,9 +91,9 @@ impl Filtered {
             let prefilter = Prefilter { radius: Radius::Texels(radius), ..Prefilter::of(moments) };
             Remix { encoding: Encoding::Moments(prefilter), ..techniques::ssm() }
         };
-        let drawn = Drawn::new(&plane.model, &plane.input(), &remix(moments));
+        let drawn = Drawn::new(&plane.model, &Plane::input(), &remix(moments));
         let two = Moments::new(MomentKind::Variance, moments.format());
-        let unlifted = remix(two).fit(&plane.input()).expect("a legal input").uniforms.views[0].bias[0];
+        let unlifted = remix(two).fit(&Plane::input()).expect("a legal input").uniforms.views[0].bias[0];
         let texel = 2.0 * HALF / f64::from(SIDE);
         let reach = (f64::from(radius) + 2.0 + widening) * texel;
         let steepest = DVec2::new(plane.normal.x, plane.normal.z) / plane.normal.y;
@@ -104,7 +104,7 @@ impl Filtered {
         Self {
             drawn,
             normal: plane.normal.as_vec3(),
-            points: on_plane.map(|point| point.as_vec3()).collect(),
+            points: on_plane.map(|point: DVec3| DVec3::as_vec3(&point)).collect(),
             unlifted,
         }
     }
