@@ -101,12 +101,7 @@ impl Filtered {
         let place = |index: u32| (f64::from(index) / f64::from(POINTS - 1) * 2.0 - 1.0) * (HALF - 2.0 * reach);
         let places = (0..POINTS * POINTS).map(|index| DVec2::new(place(index % POINTS), place(index / POINTS)));
         let on_plane = places.map(|place| plane.at(place)).filter(|point| point.y.abs() <= room);
-        Self {
-            drawn,
-            normal: plane.normal.as_vec3(),
-            points: on_plane.map(|point: DVec3| DVec3::as_vec3(&point)).collect(),
-            unlifted,
-        }
+        Self { drawn, normal: plane.normal.as_vec3(), points: on_plane.map(DVec3::as_vec3).collect(), unlifted }
     }
 
     /// Mean shadow where there is none.
