@@ -1,6 +1,6 @@
 //! Techniques by name, with the paper each is from.
 
-use crate::encoding::stage::{Encoding, Prefilter};
+use crate::encoding::stage::{Encoding, Prefilter, SUN_ANGLE};
 use crate::frame::Select;
 use crate::remix::Remix;
 use crate::split::{DepthSplits, Scheme, Split};
@@ -106,10 +106,21 @@ named! {
     /// A. Lauritzen, M. `McCool`, *Layered variance shadow maps*, Graphics Interface 2008.
     evsm "evsm" Split::One, Warp::Focused, moments(MomentKind::ExponentialVarianceFour);
 
+    /// The same with the first exponential alone.
+    evsm_two "evsm-two" Split::One, Warp::Focused, moments(MomentKind::ExponentialVarianceTwo);
+
     /// The moment shadow map, focused: four moments, Hamburger.
     ///
     /// C. Peters, R. Klein, *Moment shadow mapping*, I3D 2015.
     msm "msm" Split::One, Warp::Focused, moments(MomentKind::Hamburger);
+
+    /// The same for depths known to be within the map, Hausdorff.
+    msm_hausdorff "msm-hausdorff" Split::One, Warp::Focused, moments(MomentKind::Hausdorff);
+
+    /// Percentage-closer soft shadows, focused: penumbras as wide as the sun throws them.
+    ///
+    /// R. Fernando, *Percentage-closer soft shadows*, SIGGRAPH sketches 2005.
+    pcss "pcss" Split::One, Warp::Focused, Encoding::Soft { angle: SUN_ANGLE };
 }
 
 /// The technique of that name, if there is one.
