@@ -2,7 +2,8 @@
 struct AntumbraBlur {
     // Its texels in the layer: first x and y, side; and the layer's side.
     tile: vec4u,
-    // What the world steps from texel to texel are made of, x to z: w² (v - v w) in u and w² (u w - u) in v, of these rows.
+    // What the world steps from texel to texel are made of, x to z: w² (v - v w) in u and w² (u w - u) in v, of these
+    // rows.
     across_u: vec4f,
     across_v: vec4f,
     across_w: vec4f,
@@ -17,7 +18,8 @@ struct AntumbraBlur {
     padding: u32,
 }
 
-// Half-width of the box in texels of u and v at a texel of the tile, whose world size differs from texel to texel of a warped map.
+// Half-width of the box in texels of u and v at a texel of the tile, whose world size differs from texel to texel of a
+// warped map.
 fn antumbra_blur_radius(blur: AntumbraBlur, texel: vec2f) -> vec2f {
     let uv = (vec2f(blur.tile.xy) + texel + 0.5) / f32(blur.tile.w);
     let inverse_w = max(dot(blur.inverse_w.xyz, vec3f(uv, 1.0)), ANTUMBRA_BLUR_SMALLEST);
@@ -45,8 +47,8 @@ fn antumbra_blur_reach(radius: f32, bell: bool) -> i32 {
 // A bell ends at this many half-widths of the box that deviates as much, which is 2.5 of its own deviations.
 const ANTUMBRA_BLUR_BELL_REACH: f32 = 1.44;
 
-// Weight of a texel at an offset: its overlap with the box, times the height of the bell. Texels come and go by parts as
-// the radius changes: where it is rounded does not show.
+// Weight of a texel at an offset: its overlap with the box, times the height of the bell. Texels come and go by parts
+// as the radius changes: where it is rounded does not show.
 fn antumbra_blur_weight(offset: f32, radius: f32, bell: bool) -> f32 {
     let reach = select(radius, radius * ANTUMBRA_BLUR_BELL_REACH, bell);
     let overlap = clamp(reach + 0.5 - abs(offset), 0.0, 1.0);

@@ -1,5 +1,5 @@
-// Part of a mean of exponentials of depth, which is kept as a logarithm, so that no exponent overflows: weights by how many times less than the farthest of the depths each weighs.
-// farthest: of all the depths.
+// Part of a mean of exponentials of depth, which is kept as a logarithm, so that no exponent overflows: weights by how
+// many times less than the farthest of the depths each weighs. farthest: of all the depths.
 fn antumbra_exponential_part(depth: f32, farthest: f32, exponent: f32) -> f32 {
     return exp(exponent * (depth - farthest));
 }

@@ -1,5 +1,5 @@
-// The first map that holds the receiver and what its filter reads: maps are listed from the finest on. Towards its rim a
-// map gives way to the next ones that hold it, if any do.
+// The first map that holds the receiver and what its filter reads: maps are listed from the finest on. Towards its rim
+// a map gives way to the next ones that hold it, if any do.
 fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
     var lit = 0.0;
     var rest = 1.0;

@@ -21,7 +21,8 @@ const ANTUMBRA_SPREAD_SMALLEST: f32 = 1e-30;
 // Below every w in view.
 const ANTUMBRA_SPREAD_LEAST_W: f32 = 1e-6;
 
-// Radius of the narrowest disc, texels: at 0 edges at contacts would be as soft as one tap, at 1 softer than they need be.
+// Radius of the narrowest disc, texels: at 0 edges at contacts would be as soft as one tap, at 1 softer than they need
+// be.
 const ANTUMBRA_NARROWEST: f32 = 0.5;
 
 fn antumbra_spread(view: AntumbraView, position: vec3f, noise: f32) -> AntumbraSpread {

@@ -20,13 +20,13 @@ struct AntumbraView {
     across_u: vec4f,
     across_v: vec4f,
     across_w: vec4f,
-    // Several maps: nearest and farthest eye depth that the view serves. By depth: where it begins to give way to the next
-    // one, and one over the length of that band. By containment, in texture coordinates: what a filter reads beyond a
-    // receiver, and one over the width of the band along the rim in which it gives way.
+    // Several maps: nearest and farthest eye depth that the view serves. By depth: where it begins to give way to the
+    // next one, and one over the length of that band. By containment, in texture coordinates: what a filter reads
+    // beyond a receiver, and one over the width of the band along the rim in which it gives way.
     domain: vec4f,
-    // Maps of moments: texels over a pixel where w is 1, a row; light that is taken for bleeding, last level, lift for a
-    // wider texel of a level as a share of it. Penumbras: world units of radius for each unit of linear light depth between
-    // caster and receiver, widest radius in texels.
+    // Maps of moments: texels over a pixel where w is 1, a row; light that is taken for bleeding, last level, lift for
+    // a wider texel of a level as a share of it. Penumbras: world units of radius for each unit of linear light depth
+    // between caster and receiver, widest radius in texels.
     pixel_from_render: vec4f,
     moments: vec4f,
 }

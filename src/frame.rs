@@ -185,8 +185,8 @@ impl Pcf {
     }
 }
 
-/// Largest radius of the disc of [`Pcf::Pcss`], texels. More would show the grain of 16 taps and take a wider border from
-/// every map; less would make distant shadows no softer than boxes do.
+/// Largest radius of the disc of [`Pcf::Pcss`], texels. More would show the grain of 16 taps and take a wider border
+/// from every map; less would make distant shadows no softer than boxes do.
 pub(crate) const MOST_SOFT: f64 = 16.0;
 
 /// Everything one light needs for one frame.
@@ -413,9 +413,9 @@ pub struct ViewUniforms {
     /// Maps of moments with mips: texels of the map over a pixel at a render-space position, where w is 1: a row.
     pub pixel_from_render: [f32; 4],
     /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z: how far
-    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: 0. Maps of depths with
-    /// penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth between
-    /// caster and receiver. y: radius of the widest penumbra, texels. z, w: 0.
+    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: 0. Maps of depths
+    /// with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth
+    /// between caster and receiver. y: radius of the widest penumbra, texels. z, w: 0.
     pub moments: [f32; 4],
 }
 

@@ -337,8 +337,8 @@ impl ShadowMaps {
         self.prefilter.as_ref().map(Prefilter::texture)
     }
 
-    /// What shaders read: a `texture_depth_2d`, or a `texture_depth_2d_array` for keys of several maps; the filtered maps
-    /// for keys that store moments.
+    /// What shaders read: a `texture_depth_2d`, or a `texture_depth_2d_array` for keys of several maps; the filtered
+    /// maps for keys that store moments.
     #[must_use]
     pub fn map_view(&self) -> &wgpu::TextureView {
         &self.view
@@ -414,8 +414,8 @@ fn attachment(texture: &wgpu::Texture, label: Option<&str>, layer: u32) -> wgpu:
     })
 }
 
-/// Bilinear comparison: lit where the receiver is not farther than the texel. Moments are interpolated, between levels too,
-/// where their format allows it.
+/// Bilinear comparison: lit where the receiver is not farther than the texel. Moments are interpolated, between levels
+/// too, where their format allows it.
 fn sampler(label: Option<&str>, key: WgslKey) -> wgpu::SamplerDescriptor<'_> {
     let linear = !matches!(key.texel, Texel::Moments(moments) if !moments.linear);
     let filter = if linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };

@@ -11,8 +11,8 @@
 //! - The scene is known by bounds, not by triangles. Bounds are promises.
 //! - This version serves directional light with one map, uniform ([`techniques::ssm`], [`techniques::fsm`]) or warped
 //!   ([`techniques::psm`], [`techniques::tsm`], [`techniques::lispsm`], [`techniques::minimax`],
-//!   [`techniques::least_error`]), or with several, split by depth ([`techniques::pssm`], [`techniques::cascades`]). Maps
-//!   store depths or moments of them ([`techniques::vsm`] to [`techniques::msm`]).
+//!   [`techniques::least_error`]), or with several, split by depth ([`techniques::pssm`], [`techniques::cascades`]).
+//!   Maps store depths or moments of them ([`techniques::vsm`] to [`techniques::msm`]).
 //!
 //! # Not here
 //! A renderer, a scene graph, a device. The core never names a GPU; with feature `wgpu` the module `gpu` brings

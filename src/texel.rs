@@ -19,8 +19,8 @@ pub struct Moments {
     format: MomentFormat,
     /// Whether samplers interpolate the format; otherwise the shader does, from four texels.
     pub linear: bool,
-    /// Whether far texels are read from smaller copies of the map. Maps that share a layer ([`Share`](crate::Share)) are
-    /// read from those in which they are whole texels: all of them, where sides are powers of two of 512 or more.
+    /// Whether far texels are read from smaller copies of the map. Maps that share a layer ([`Share`](crate::Share))
+    /// are read from those in which they are whole texels: all of them, where sides are powers of two of 512 or more.
     pub mips: bool,
 }
 
@@ -63,7 +63,8 @@ pub enum MomentFormat {
 pub struct BlurUniforms {
     /// The view's texels in its layer: first x and y, side; and the layer's side.
     pub tile: [u32; 4],
-    /// World steps from texel to texel: `t_u` = w² (V − v W), `t_v` = w² (u W − U). This is U, x to z; the last member is 0.
+    /// World steps from texel to texel: `t_u` = w² (V − v W), `t_v` = w² (u W − U). This is U, x to z; the last member
+    /// is 0.
     pub across_u: [f32; 4],
     /// V of those steps.
     pub across_v: [f32; 4],
@@ -245,8 +246,8 @@ impl Moments {
         }
     }
 
-    /// What rounding takes from the variance of centred depths: MATH.md section 7, measured; a quarter of what is stated
-    /// there for 32 bits, because depths are centred.
+    /// What rounding takes from the variance of centred depths: MATH.md section 7, measured; a quarter of what is
+    /// stated there for 32 bits, because depths are centred.
     #[must_use]
     pub const fn variance_loss(self) -> f32 {
         match self.format {

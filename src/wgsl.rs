@@ -18,11 +18,11 @@
 //! fn antumbra_visibility_noisy(position: vec3f, normal: vec3f, view_depth: f32, noise: f32) -> f32
 //! ```
 //!
-//! which turns the disc by `noise` of a whole turn, 0 to 1 (interleaved gradient noise of the pixel, say), so that bands
-//! become grain; `antumbra_visibility` is that with a noise of 0.
+//! which turns the disc by `noise` of a whole turn, 0 to 1 (interleaved gradient noise of the pixel, say), so that
+//! bands become grain; `antumbra_visibility` is that with a noise of 0.
 //!
-//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), all other filters, and engines that want the cheapest
-//! fragments:
+//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), all other filters, and engines that
+//! want the cheapest fragments:
 //!
 //! ```wgsl
 //! fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup   // in the vertex stage
@@ -30,8 +30,9 @@
 //! ```
 //!
 //! `AntumbraLookup` has the members `uv: vec2f`, `depth: f32` and `slope: vec2f`, in this order; carry `uv` and `depth`
-//! from stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`],
-//! [`Pcf::Box5x5`] and [`Pcf::Box7x7`] (the other filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive no normal.
+//! from stage to stage with perspective-correct interpolation, and `slope` only for [`Pcf::Box3x3`], [`Pcf::Box5x5`]
+//! and [`Pcf::Box7x7`] (the other filters never read it: pass `vec2f()`). Then fragments load no uniforms and receive
+//! no normal.
 //!
 //! Kind of promise: exact, up to rounding, where all vertices of a triangle are given one normal, because all members
 //! are then linear in position (`slope` is constant). With smooth normals the bias is interpolated: near enough on
@@ -275,9 +276,9 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
 }
 
 /// The whole text of the passes that filter a map of depths into one of moments, for engines that do without the module
-/// `gpu`: vertex entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_blur_along_u` (reads
-/// depths), `antumbra_blur_along_v` (reads what that wrote) and `antumbra_halve` (a level of mips from the one above).
-/// Bindings in group 0: 0 [`BlurUniforms`](crate::BlurUniforms), 1 the depths, 2 what is stored.
+/// `gpu`: vertex entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_blur_along_u`
+/// (reads depths), `antumbra_blur_along_v` (reads what that wrote) and `antumbra_halve` (a level of mips from the one
+/// above). Bindings in group 0: 0 [`BlurUniforms`](crate::BlurUniforms), 1 the depths, 2 what is stored.
 #[must_use]
 pub fn prefilter(moments: Moments) -> String {
     moments::prefilter(moments)

@@ -100,8 +100,8 @@ impl Drawn {
         (0..TURNS).map(|turn| f64::from(lit(turn))).sum::<f64>() / f64::from(TURNS)
     }
 
-    /// Width of the penumbra along the right edge of the pole's shadow, `behind` the pole: that of a disc whose shadow has
-    /// the deviation that was found.
+    /// Width of the penumbra along the right edge of the pole's shadow, `behind` the pole: that of a disc whose shadow
+    /// has the deviation that was found.
     fn width(&self, behind: f64) -> f64 {
         const STEPS: i32 = 240;
         let reach = 1.0;

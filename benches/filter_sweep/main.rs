@@ -1,7 +1,7 @@
-//! Maps of moments beside percentage-closer filtering at the same width: time on the adapter, error against the truth, and
-//! distance from the picture that comparing first and averaging then gives. `cargo bench --bench filter_sweep` writes
-//! `docs/FILTERS.md`, its plots and `target/filter_sweep/sweep.csv`; `-- --quick` runs two cases and three widths, and
-//! writes the table alone.
+//! Maps of moments beside percentage-closer filtering at the same width: time on the adapter, error against the truth,
+//! and distance from the picture that comparing first and averaging then gives. `cargo bench --bench filter_sweep`
+//! writes `docs/FILTERS.md`, its plots and `target/filter_sweep/sweep.csv`; `-- --quick` runs two cases and three
+//! widths, and writes the table alone.
 
 mod contenders;
 mod measure;

@@ -27,8 +27,8 @@ const ANTUMBRA_BLUR_SMALLEST: f32 = 1e-30;
 /// Twin of the shader's constant: half-widths at which a bell is cut off.
 const ANTUMBRA_BLUR_BELL_REACH: f32 = 1.44;
 
-/// Twin of `antumbra_blur_radius`: half-width in texels of u and v, at a texel of the tile. Towards the rim, beyond which
-/// nothing is drawn, it narrows.
+/// Twin of `antumbra_blur_radius`: half-width in texels of u and v, at a texel of the tile. Towards the rim, beyond
+/// which nothing is drawn, it narrows.
 #[must_use]
 pub fn antumbra_blur_radius(blur: &BlurUniforms, texel: Vec2) -> Vec2 {
     let [across_u, across_v, across_w, inverse_w] =

@@ -22,13 +22,14 @@ pub trait CompareMap {
     fn size(&self) -> UVec2;
     /// Bilinear share of the four texels around `uv` whose depth is at least `depth`; coordinates clamp to the edge.
     fn sample_compare(&self, uv: Vec2, depth: f32) -> f32;
-    /// The depth in a texel, by its number along u and v; beyond the map it is that at its rim. Maps of moments have none.
+    /// The depth in a texel, by its number along u and v; beyond the map it is that at its rim. Maps of moments have
+    /// none.
     fn depth(&self, texel: Vec2) -> f32 {
         let _ = texel;
         1.0
     }
-    /// What is stored around `uv` at a level of the mip chain, interpolated; of a series, the `pair`th two terms. Maps of
-    /// depths store none.
+    /// What is stored around `uv` at a level of the mip chain, interpolated; of a series, the `pair`th two terms. Maps
+    /// of depths store none.
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
         let _ = (uv, level, pair);
         Vec4::ZERO

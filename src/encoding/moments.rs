@@ -95,8 +95,8 @@ pub fn antumbra_moments_least(b: Vec4, z: f32, roots: Vec2) -> f32 {
     if share > 0.0 { share.min(1.0) } else { 0.0 }
 }
 
-/// Twin of `antumbra_moments_least_within`: least share before `z` of any distribution on [−1, 1] whose least one on the
-/// line reaches beyond.
+/// Twin of `antumbra_moments_least_within`: least share before `z` of any distribution on [−1, 1] whose least one on
+/// the line reaches beyond.
 #[must_use]
 pub fn antumbra_moments_least_within(b: Vec4, z: f32) -> f32 {
     if !(z > ANTUMBRA_MOMENTS_NEAREST) {

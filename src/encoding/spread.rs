@@ -1,8 +1,9 @@
 //! How the taps of a disc are spread around a receiver: the Rust twin of `shaders/spread_*.wgsl`.
 //!
-//! A light of angular diameter α throws penumbras whose radius, across the light, is tan(α/2) times the distance between
-//! caster and receiver: a disc in the world. Texels are not: a map may be longer than wide, and warped. So the disc is
-//! spanned by two radii across the light, each as texels, by the derivative of texture coordinates at the receiver:
+//! A light of angular diameter α throws penumbras whose radius, across the light, is tan(α/2) times the distance
+//! between caster and receiver: a disc in the world. Texels are not: a map may be longer than wide, and warped. So the
+//! disc is spanned by two radii across the light, each as texels, by the derivative of texture coordinates at the
+//! receiver:
 //!
 //! ```text
 //! ∇u = (U − u W) / w,   ∇v = (V − v W) / w       (rows of the view; none of them changes along the light)

@@ -30,8 +30,8 @@ pub enum Encoding {
 /// Angular diameter of the sun and of the moon, radians: 32 minutes of arc. [`Pcf::Pcss`] without an angle has it.
 pub const SUN_ANGLE: f32 = 0.0093;
 
-/// Largest angle of a light, radians: it would fill a quarter of the sky's width, and penumbras would reach for a quarter of
-/// their casters' distance to either side, farther than any border.
+/// Largest angle of a light, radians: it would fill a quarter of the sky's width, and penumbras would reach for a
+/// quarter of their casters' distance to either side, farther than any border.
 const WIDEST_LIGHT: f64 = 0.5;
 
 impl Default for Encoding {
@@ -82,8 +82,8 @@ impl Prefilter {
     /// How far receivers are lifted for the blur, as a share of its radius r, and of a texel of their mip level.
     ///
     /// Of a slanted plane that is averaged, half lies before the receiver at its middle. Depths are then as likely to
-    /// either side of their mean, which is the receiver's own, with the deviation σ = r a/√3 where they fall by a over a
-    /// texel. What that does:
+    /// either side of their mean, which is the receiver's own, with the deviation σ = r a/√3 where they fall by a over
+    /// a texel. What that does:
     /// - Variance, and the mean of an exponential: nothing. At the mean Chebyshev's bound is 1, and exponentials have a
     ///   mean beyond it (Jensen).
     /// - Series: nothing. It is odd about the step, and a half reads lit.

@@ -5,10 +5,10 @@
 //! (2)  lit ≤ p(t) = σ²/(σ² + (t − μ)²) for t > μ, else 1
 //! ```
 //!
-//! Exact where all casters are at one depth and all else at another; where casters overlap, σ² is large and light shines
-//! through what the first of them hides (light bleeding). Moments are taken about the middle of the depth range: the
-//! difference in (1) is of numbers four times smaller, and loses as much less. What it may lose is added, not taken as a
-//! least value: (2) is then a bound whatever rounding did.
+//! Exact where all casters are at one depth and all else at another; where casters overlap, σ² is large and light
+//! shines through what the first of them hides (light bleeding). Moments are taken about the middle of the depth range:
+//! the difference in (1) is of numbers four times smaller, and loses as much less. What it may lose is added, not taken
+//! as a least value: (2) is then a bound whatever rounding did.
 //!
 //! # Where this differs from print
 //! - TH-13: "shadowed with intensity p": p bounds the share that is *lit*.

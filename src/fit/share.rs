@@ -130,6 +130,10 @@ impl Fitter<'_> {
             Slice { size, seen: cost.seen(near, far), distance: 0.5 * (near + far), before }
         };
         let mut slices: ArrayVec<Slice, MAX_VIEWS> = cuts.slices.iter().map(slice).collect();
+        // Whether a snapped map is one of the whole scene hangs on its texels: sizes among other maps are no history.
+        if still && slices.iter().any(|slice| slice.before.is_none()) {
+            slices.iter_mut().for_each(|slice| slice.before = None);
+        }
         // Where in its depths things are: in their middle as long as nobody knows better.
         let mut count = [ENOUGH_SAMPLES; MAX_VIEWS];
         for depth in samples.iter().map(|sample| camera.eye_depth(*sample, DVec3::ZERO)) {

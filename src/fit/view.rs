@@ -114,7 +114,7 @@ impl Texels {
     }
 }
 
-/// How far behind the last receiver casters are drawn, as a multiple of what f32 loses of depths along the light: where
+/// How far behind the last receiver and beyond the rim casters are drawn, as a multiple of what f32 loses of depths along the light: where
 /// maps are found by containment, a receiver just behind a map is still looked up in it, as far as its bias lifts it
 /// for rounding. 1 could cull its caster; more costs nothing to speak of.
 const CASTERS_BEHIND: f64 = 16.0;
@@ -135,7 +135,9 @@ impl Fitter<'_> {
         let drawn = window.bordered(texel * f64::from(texels.border - texels.ring));
         // Casters, and the depth that they and the receivers need.
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
-        let mut cull = cull::prism(&drawn, last + margin, input.origin);
+        // What f32 moves across the rim is drawn where it is looked up.
+        let across = CASTERS_BEHIND * margin;
+        let mut cull = cull::prism(&drawn.bordered(DVec2::splat(across)), last + margin, input.origin);
         let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
             return Err(Why::NothingCastsHere);
         };

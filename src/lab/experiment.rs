@@ -91,7 +91,8 @@ impl Backend {
         }
     }
 
-    /// A remix in the formats that the renderer has ([`supported`](crate::gpu::supported)); the software renderer has all.
+    /// A remix in the formats that the renderer has ([`supported`](crate::gpu::supported)); the software renderer has
+    /// all.
     #[must_use]
     pub fn adapted(&self, remix: &Remix) -> Remix {
         let features = match self {

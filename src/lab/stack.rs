@@ -1,5 +1,5 @@
-//! `Stack`: six cards over the ground, at unequal heights and turned against each other, so that one to six overlap. The
-//! hard case of maps that average depths: where several casters lie over each other, moments forget the near ones.
+//! `Stack`: six cards over the ground, at unequal heights and turned against each other, so that one to six overlap.
+//! The hard case of maps that average depths: where several casters lie over each other, moments forget the near ones.
 //!
 //! 1 unit = 1 m.
 

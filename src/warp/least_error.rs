@@ -18,12 +18,12 @@
 //!
 //! Maps that are found by containment ([`Select::Finest`](crate::Select::Finest)) are looked up for more than their own
 //! slice: for receivers behind it that they and no map before them hold, and not for those of the slice that such a map
-//! holds. Their strength is the least one for the slice, weakened or strengthened until it is no more than 5 % worse, by
-//! (1), than the best for the samples that they serve. Without that, planes that are 3 % nearer can let a map be warped
-//! 14 times as strongly and wrong pixels of a picture rise from 1.0 to 2.4 % (SparseCity, across, 1024², points); with
-//! it they stay at 1.0 %. Taking the samples that are served for those of the slice mends that as well and shows 2 %
-//! fewer wrong pixels on the built-in scenes, but 1 to 2 % more on the case files (one with 19 %); half of both, 1 to
-//! 2 % more. Over all pictures of `docs/SPLITS.md` the limit changes the mean by less than 0.3 %.
+//! holds. Their strength is the least one for the slice, weakened or strengthened until it is no more than 5 % worse,
+//! by (1), than the best for the samples that they serve. Without that, planes that are 3 % nearer can let a map be
+//! warped 14 times as strongly and wrong pixels of a picture rise from 1.0 to 2.4 % (SparseCity, across, 1024²,
+//! points); with it they stay at 1.0 %. Taking the samples that are served for those of the slice mends that as well
+//! and shows 2 % fewer wrong pixels on the built-in scenes, but 1 to 2 % more on the case files (one with 19 %); half
+//! of both, 1 to 2 % more. Over all pictures of `docs/SPLITS.md` the limit changes the mean by less than 0.3 %.
 //!
 //! Kind of promise: typical. `docs/WARPS.md` has the strength of least E beside the best one of a sweep, on many
 //! scenes: mostly within a tenth of its error, and what the exceptions are.
@@ -55,8 +55,8 @@ const ENOUGH_SAMPLES: f64 = 8.0;
 const RELUCTANCE: f64 = 0.2;
 
 /// By which share a strength may be worse, for all that a map is looked up for, than the best for that. At 0 receivers
-/// behind a slice decide as much as its own, and pictures of the case files come out 1 to 2 % worse; at 0.15 a map whose
-/// warp is far too strong for what it serves keeps a third of the wrong pixels that this costs.
+/// behind a slice decide as much as its own, and pictures of the case files come out 1 to 2 % worse; at 0.15 a map
+/// whose warp is far too strong for what it serves keeps a third of the wrong pixels that this costs.
 const SPARED: f64 = 0.05;
 
 /// Halvings of the way between two strengths: 16 leave 2e-5 of it. Fewer show as steps when the camera moves.

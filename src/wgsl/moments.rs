@@ -9,8 +9,8 @@ use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments};
 /// Most fragments that read a map of moments.
 const MAX_READ: usize = 12;
 
-/// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps are
-/// layers of an array.
+/// What finds out how much light arrives, from what is stored where a receiver is looked up; `arrayed`: whether maps
+/// are layers of an array.
 pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str>, MAX_READ> {
     let mut fragments = ArrayVec::new();
     fragments.push(read_numbers(moments).into());

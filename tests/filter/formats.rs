@@ -10,9 +10,9 @@ use glam::{Vec2, Vec3};
 use crate::stage::{Stage, encoding, filtered, fit, key_of};
 use crate::support;
 
-/// Mean difference that a format may make, of 255: MATH.md section 7's standard deviations of depth that rounding makes,
-/// as shares of shadows' fringes; half floats keep variance a thousandth of the range squared apart, which is a wide
-/// fringe at every contact.
+/// Mean difference that a format may make, of 255: MATH.md section 7's standard deviations of depth that rounding
+/// makes, as shares of shadows' fringes; half floats keep variance a thousandth of the range squared apart, which is a
+/// wide fringe at every contact.
 fn allowed(moments: Moments) -> f64 {
     match (moments.kind(), moments.format()) {
         (_, MomentFormat::Float32) => 0.0,

@@ -34,8 +34,8 @@ fn without_views(remix: &Remix, map: MapBudget) -> ShadowFrame {
     frame
 }
 
-/// Two passes a view, one a level of each layer in use; none without views, and everything is lit then, whether maps were
-/// drawn before or not.
+/// Two passes a view, one a level of each layer in use; none without views, and everything is lit then, whether maps
+/// were drawn before or not.
 #[test]
 fn frames_without_views_are_not_filtered() {
     let Some(stage) = Stage::new() else { return };

@@ -177,7 +177,8 @@ fn weights_are_continuous() {
             let radius = index as f32 * step;
             let now = weights(radius);
             let jump = before.iter().zip(&now).map(|(before, now)| (before - now).abs()).fold(0.0, f32::max);
-            // A texel that comes in takes as much from the middle one, twice: 2 dr at most, and 3/r² of the bell's rise.
+            // A texel that comes in takes as much from the middle one, twice: 2 dr at most, and 3/r² of the bell's
+            // rise.
             assert!(jump <= 4.0 * step, "radius {radius}, bell {bell}: {}", jump / step);
             // Box and bell deviate alike, from where texels do not decide about it.
             if radius > 3.0 {

@@ -1,5 +1,5 @@
-//! Depths that are none, and casters with vertices that are none: they stay where they are, and nothing reads as more or
-//! less than light.
+//! Depths that are none, and casters with vertices that are none: they stay where they are, and nothing reads as more
+//! or less than light.
 
 use antumbra::encoding::blur::{antumbra_blur_radius, antumbra_blur_reach};
 use antumbra::encoding::depth::antumbra_visible;

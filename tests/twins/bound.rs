@@ -107,8 +107,8 @@ impl LookupBound {
     }
 }
 
-/// By how much of itself the spread of a penumbra's taps may be off: by what the derivative of texture coordinates loses
-/// where rows and w cancel.
+/// By how much of itself the spread of a penumbra's taps may be off: by what the derivative of texture coordinates
+/// loses where rows and w cancel.
 pub(crate) fn spread(view: &ViewUniforms, position: Vec3) -> f64 {
     let at = position.extend(1.0).as_dvec4();
     let row = |row: [f32; 4]| Vec4::from_array(row).as_dvec4();

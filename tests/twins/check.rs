@@ -96,8 +96,8 @@ impl Doubt {
     }
 }
 
-/// By how much a disc's points may be off on an adapter, as a share of its radius: the cosine and the sine of its turn, and
-/// the products with the golden angle. (WGSL promises 2⁻¹¹ of the former; adapters keep this.)
+/// By how much a disc's points may be off on an adapter, as a share of its radius: the cosine and the sine of its turn,
+/// and the products with the golden angle. (WGSL promises 2⁻¹¹ of the former; adapters keep this.)
 const TURNED_OFF: f64 = 1e-5;
 
 /// By how many texels the points of a filter's disc may be off.

@@ -62,8 +62,8 @@ impl Renderer {
         }
     }
 
-    /// The same for a key with [`Pcf::Box5x5`](crate::Pcf::Box5x5), whose box is made `taps` bilinear taps to an axis wide,
-    /// 2 `taps` − 1 texels: the yardstick of wide filters, as an engine writes it. Other keys stay as they are.
+    /// The same for a key with [`Pcf::Box5x5`](crate::Pcf::Box5x5), whose box is made `taps` bilinear taps to an axis
+    /// wide, 2 `taps` − 1 texels: the yardstick of wide filters, as an engine writes it. Other keys stay as they are.
     #[must_use]
     pub fn with_box(gpu: &Gpu, key: WgslKey, taps: u32) -> Self {
         let renderer = Self::new(gpu, key);
