@@ -1,6 +1,6 @@
 //! Techniques by name, with the paper each is from.
 
-use crate::encoding::stage::{Encoding, Prefilter, SUN_ANGLE};
+use crate::encoding::stage::{Encoding, Prefilter};
 use crate::frame::Select;
 use crate::remix::Remix;
 use crate::split::{DepthSplits, Scheme, Split};
@@ -116,11 +116,6 @@ named! {
 
     /// The same for depths known to be within the map, Hausdorff.
     msm_hausdorff "msm-hausdorff" Split::One, Warp::Focused, moments(MomentKind::Hausdorff);
-
-    /// Percentage-closer soft shadows, focused: penumbras as wide as the sun throws them.
-    ///
-    /// R. Fernando, *Percentage-closer soft shadows*, SIGGRAPH sketches 2005.
-    pcss "pcss" Split::One, Warp::Focused, Encoding::Soft { angle: SUN_ANGLE };
 }
 
 /// The technique of that name, if there is one.
