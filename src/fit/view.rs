@@ -136,8 +136,8 @@ impl Fitter<'_> {
         // Casters, and the depth that they and the receivers need.
         let last = body.vertices.iter().map(|v| light.travel().dot(*v)).fold(f64::NEG_INFINITY, f64::max);
         // What f32 moves across the rim is drawn where it is looked up.
-        let across = CASTERS_BEHIND * margin;
-        let mut cull = cull::prism(&drawn.bordered(DVec2::splat(across)), last + margin, input.origin);
+        let rim = drawn.bordered(DVec2::splat(CASTERS_BEHIND * margin));
+        let mut cull = cull::prism(&rim, last + margin, input.origin);
         let Some(depth) = DepthAlongLight::of(&drawn, &body.vertices, &input.scene, &cull) else {
             return Err(Why::NothingCastsHere);
         };
@@ -167,8 +167,7 @@ impl Fitter<'_> {
             extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| squares(vertex)));
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
         self.report(window, margin, frame);
-        let (ring, corner) = (texels.ring, self.tile.corner);
-        let drawn_side = self.tile.side - 2 * ring;
+        let (ring, corner, drawn_side) = (texels.ring, self.tile.corner, self.tile.side - 2 * texels.ring);
         let view = ShadowView {
             clip_from_render: clip_from_render.narrow(),
             depth_from_render: clip_from_render.narrow_row(2),
