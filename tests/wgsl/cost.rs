@@ -9,7 +9,7 @@ use antumbra::transpile::naga::{self, Expression, Statement};
 use antumbra::{MapShape, Moments, Pcf, Select, Texel, WgslKey, wgsl};
 
 use crate::host::PLACES;
-use crate::walkers::any_statement;
+use crate::walkers::{any_statement, calls};
 
 /// What a function computes, all that it calls included, as often as it calls them; what a loop repeats counts once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,17 +50,6 @@ impl Cost {
     }
 }
 
-fn callees(block: &naga::Block) -> Vec<naga::Handle<naga::Function>> {
-    let found = std::cell::RefCell::new(Vec::new());
-    any_statement(block, &|statement| {
-        if let Statement::Call { function, .. } = statement {
-            found.borrow_mut().push(*function);
-        }
-        false
-    });
-    found.into_inner()
-}
-
 /// Cost of `antumbra_visibility`, the functions that it reaches, and those of the text that it does not.
 fn cost(key: WgslKey) -> (Cost, usize, Vec<String>) {
     let shader = Shader::parse(&wgsl::module(key, PLACES[0])).unwrap();
@@ -69,7 +58,7 @@ fn cost(key: WgslKey) -> (Cost, usize, Vec<String>) {
     let mut costs: HashMap<_, (Cost, std::collections::HashSet<_>)> = HashMap::new();
     for (handle, function) in functions.iter() {
         let (mut sum, mut reached) = (Cost::of(function), std::collections::HashSet::from([handle]));
-        for callee in callees(&function.body) {
+        for callee in calls(&function.body) {
             let (other, others) = &costs[&callee];
             sum = sum.and(*other);
             reached.extend(others);

@@ -18,7 +18,8 @@ pub(crate) fn samples(module: &naga::Module, name: &str) -> usize {
     counts[&handle]
 }
 
-fn calls(block: &naga::Block) -> Vec<naga::Handle<naga::Function>> {
+/// The functions that a block calls, as often as it does.
+pub(crate) fn calls(block: &naga::Block) -> Vec<naga::Handle<naga::Function>> {
     let found = std::cell::RefCell::new(Vec::new());
     any_statement(block, &|statement| {
         if let Statement::Call { function, .. } = statement {
