@@ -12,7 +12,7 @@ use crate::focus::FocusBody;
 use crate::frame::{ShadowFrame, ViewUniforms};
 use crate::light_space::LightSpace;
 use crate::report::{Part, Why};
-use crate::texel::{BlurUniforms, MomentFormat, MomentKind, Texel};
+use crate::texel::{BlurUniforms, MomentKind, Texel};
 
 /// Shortest extent across the light by which a world radius is divided, world units: what is thinner is blurred as much
 /// as can be.
@@ -151,8 +151,7 @@ impl Fitter<'_> {
 /// Says what a format of moments loses.
 pub(crate) fn report(texel: Texel, frame: &mut ShadowFrame) {
     let Texel::Moments(moments) = texel else { return };
-    let variance = moments.kind() == MomentKind::Variance;
-    if variance && moments.format() == MomentFormat::Float16 && moments.variance_loss() >= MUCH_LOST {
+    if moments.kind() == MomentKind::Variance && moments.variance_loss() >= MUCH_LOST {
         frame.leave_out(Part::Light, Why::FormatLoses { depth: f64::from(moments.variance_loss()).sqrt() });
     }
 }
