@@ -100,6 +100,10 @@ pub enum Pcf {
     /// The four nearest texels, bilinearly weighted by the sampler hardware: one texture sample.
     #[default]
     Hardware2x2,
+    /// Four bilinear samples over the part of the map that the pixel covers: one bilinear sample where texels are larger
+    /// than pixels, the mean of what the pixel shows where they are smaller ([`pixel`](crate::encoding::pixel)). Its taps know
+    /// their own depths, so that it needs the bias and the border of one sample.
+    Pixel,
     /// A box three texels wide: 4 texture samples.
     Box3x3,
     /// A box five texels wide: 9 texture samples.
@@ -118,17 +122,17 @@ pub enum Pcf {
 
 impl Pcf {
     /// All of them, cheapest first.
-    pub const ALL: [Self; 7] =
-        [Self::Point, Self::Hardware2x2, Self::Box3x3, Self::Box5x5, Self::Disc, Self::Box7x7, Self::Pcss];
+    pub const ALL: [Self; 8] =
+        [Self::Point, Self::Hardware2x2, Self::Box3x3, Self::Pixel, Self::Box5x5, Self::Disc, Self::Box7x7, Self::Pcss];
 
     /// Distance in texels, along an axis of the map, from a point to the farthest texel centre that its filter reads.
     /// Point: ½ (the texel the point lies in); bilinear: 1; an n×n box of bilinear samples: (n + 1)/2; a disc
-    /// of them: its radius and 1.
+    /// of them: its radius and 1. Taps over the pixel that lie beyond the map are not read: those of one bilinear sample.
     #[must_use]
     pub const fn reach(self) -> f64 {
         match self {
             Self::Point => 0.5,
-            Self::Hardware2x2 => 1.0,
+            Self::Hardware2x2 | Self::Pixel => 1.0,
             Self::Box3x3 => 2.0,
             Self::Box5x5 => 3.0,
             Self::Box7x7 | Self::Disc => 4.0,
@@ -141,7 +145,7 @@ impl Pcf {
     pub const fn tap_reach(self) -> f64 {
         match self {
             Self::Point => 0.5,
-            Self::Hardware2x2 | Self::Box3x3 | Self::Box5x5 | Self::Box7x7 | Self::Disc | Self::Pcss => 1.0,
+            _ => 1.0,
         }
     }
 
@@ -150,7 +154,7 @@ impl Pcf {
     pub const fn samples(self) -> u32 {
         match self {
             Self::Point | Self::Hardware2x2 => 1,
-            Self::Box3x3 => 4,
+            Self::Box3x3 | Self::Pixel => 4,
             Self::Box5x5 => 9,
             Self::Disc => 12,
             Self::Box7x7 | Self::Pcss => 16,
@@ -161,6 +165,12 @@ impl Pcf {
     #[must_use]
     pub const fn is_disc(self) -> bool {
         matches!(self, Self::Disc | Self::Pcss)
+    }
+
+    /// Whether its taps lie where the receiver's surroundings say: the text needs more than a place in the map.
+    #[must_use]
+    pub const fn is_spread(self) -> bool {
+        matches!(self, Self::Disc | Self::Pcss | Self::Pixel)
     }
 
     /// Whether depths are read as they are, besides being compared with: there is no GLSL for it, whose textures of
@@ -176,6 +186,7 @@ impl Pcf {
         match self {
             Self::Point => "point",
             Self::Hardware2x2 => "pcf2x2",
+            Self::Pixel => "pixel",
             Self::Box3x3 => "pcf3x3",
             Self::Box5x5 => "pcf5x5",
             Self::Box7x7 => "pcf7x7",
@@ -411,11 +422,13 @@ pub struct ViewUniforms {
     /// the width of the band along the rim in which it gives way, texture coordinates.
     pub domain: [f32; 4],
     /// Maps of moments with mips: texels of the map over a pixel at a render-space position, where w is 1: a row.
+    /// Filters of the pixel: size of a pixel there across the line of sight, world units.
     pub pixel_from_render: [f32; 4],
     /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z: how far
     /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: 0. Maps of depths
     /// with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth
-    /// between caster and receiver. y: radius of the widest penumbra, texels. z, w: 0.
+    /// between caster and receiver. y: radius of the widest penumbra, texels. z, w: 0. Filters of the pixel
+    /// ([`Pcf::Pixel`]): x, y, z: the eye, render space, w: 1; or for parallel views the direction of sight, negated, and 0.
     pub moments: [f32; 4],
 }
 

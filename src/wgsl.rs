@@ -21,7 +21,7 @@
 //! which turns the disc by `noise` of a whole turn, 0 to 1 (interleaved gradient noise of the pixel, say), so that
 //! bands become grain; `antumbra_visibility` is that with a noise of 0.
 //!
-//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), all other filters, and engines that
+//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), filters of texels, and engines that
 //! want the cheapest fragments:
 //!
 //! ```wgsl
@@ -160,6 +160,7 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
     let mut fragments: ArrayVec<_, 5> = match key.filter {
         Pcf::Point => core::iter::once(include_str!("../shaders/pcf_point.wgsl")).collect(),
         Pcf::Hardware2x2 => core::iter::once(include_str!("../shaders/pcf_hardware.wgsl")).collect(),
+        Pcf::Pixel => core::iter::once(include_str!("../shaders/pcf_pixel.wgsl")).collect(),
         Pcf::Box3x3 => [TAP, include_str!("../shaders/pcf_box_three.wgsl")].into_iter().collect(),
         Pcf::Box5x5 => [TAP, include_str!("../shaders/pcf_box_five.wgsl")].into_iter().collect(),
         Pcf::Box7x7 => [TAP, include_str!("../shaders/pcf_box_seven.wgsl")].into_iter().collect(),
@@ -174,7 +175,8 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
         }
     };
     // Stored depths are as linear as the law says.
-    if key.filter.reads_depths() && key.shape == MapShape::Affine {
+    let needs_law = key.filter.reads_depths() || key.filter == Pcf::Pixel;
+    if needs_law && key.shape == MapShape::Affine {
         fragments.push(include_str!("../shaders/law_linear.wgsl"));
     }
     fragments
@@ -185,6 +187,8 @@ fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
     let Texel::Moments(moments) = key.texel else {
         return core::iter::once(match key.shape {
             _ if key.filter.is_disc() => disc::look(key.shape),
+            MapShape::Affine if key.filter == Pcf::Pixel => include_str!("../shaders/look_affine_pixel.wgsl"),
+            _ if key.filter == Pcf::Pixel => include_str!("../shaders/look_projective_pixel.wgsl"),
             MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
             MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
         })
@@ -322,6 +326,7 @@ impl WgslKey {
     /// Whether its text has the lookup in two stages, `antumbra_place` and `antumbra_lit`.
     #[must_use]
     pub fn has_two_stages(self) -> bool {
-        self.maps == 1 && self.shape == MapShape::Affine && self.texel == Texel::Depth && !self.filter.is_disc()
+        let is_plain = self.texel == Texel::Depth && !self.filter.is_spread();
+        self.maps == 1 && self.shape == MapShape::Affine && is_plain
     }
 }

@@ -207,7 +207,7 @@ pub fn antumbra_look_noisy(key: WgslKey, view: &ViewUniforms, position: Vec3, no
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
         shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
     };
-    Lookup { spread: antumbra_spread(key, view, position, noise), ..look }
+    Lookup { spread: antumbra_spread(key, view, position, normal, noise), ..look }
 }
 
 /// Twin of `antumbra_caster_depth`.

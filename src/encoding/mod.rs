@@ -7,6 +7,7 @@ pub mod exponential;
 pub mod footprint;
 pub mod moments;
 pub mod pcf;
+pub mod pixel;
 pub mod read;
 pub mod split;
 pub mod spread;

@@ -30,6 +30,7 @@ pub fn antumbra_filter(filter: Pcf, map: &impl CompareMap, look: &Lookup) -> f32
         Pcf::Box7x7 => box_seven(map, look, fraction(look.uv, size)),
         Pcf::Disc => disc(map, look),
         Pcf::Pcss => soft(map, look),
+        Pcf::Pixel => super::pixel::pixel(map, look),
     }
 }
 
@@ -210,7 +211,7 @@ mod tests {
                 Pcf::Box5x5 => 5.0,
                 Pcf::Box7x7 => 7.0,
                 // No boxes.
-                Pcf::Disc | Pcf::Pcss => return Ok(()),
+                Pcf::Disc | Pcf::Pcss | Pcf::Pixel => return Ok(()),
             };
             let expected = ((u * 16.0 - 8.0) / width + 0.5).clamp(0.0, 1.0);
             // Samplers keep 8 bits of the position between texels.

@@ -17,6 +17,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
+use super::pixel::{Pixel, antumbra_spread_pixel};
 use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
 
 /// How taps are spread around a receiver. Twin of `AntumbraSpread`.
@@ -38,22 +39,27 @@ pub struct Spread {
     pub least: f32,
     /// Greatest such distance.
     pub most: f32,
+    /// The pixel's own part of the map, for filters that follow it.
+    pub pixel: Pixel,
     /// What depths are multiplied by; the shader's text knows it.
     pub shape: MapShape,
 }
 
 /// Twin of the shader's constant: below every length that is divided by.
-const ANTUMBRA_SPREAD_SMALLEST: f32 = 1e-30;
+pub(crate) const ANTUMBRA_SPREAD_SMALLEST: f32 = 1e-30;
 
 /// Twin of the shader's constant: below every w in view.
-const ANTUMBRA_SPREAD_LEAST_W: f32 = 1e-6;
+pub(crate) const ANTUMBRA_SPREAD_LEAST_W: f32 = 1e-6;
 
 /// Twin of the shader's constant: radius of the narrowest disc, texels.
 pub(crate) const ANTUMBRA_NARROWEST: f32 = 0.5;
 
 /// Twin of `antumbra_spread`: how the taps of a key's filter are spread.
 #[must_use]
-pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, noise: f32) -> Spread {
+pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Spread {
+    if key.filter == Pcf::Pixel {
+        return antumbra_spread_pixel(key.shape, view, position, normal);
+    }
     if key.filter != Pcf::Pcss {
         return Spread { noise, shape: key.shape, ..Spread::default() };
     }
@@ -78,6 +84,7 @@ pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, noise:
         along,
         across,
         fade: Vec2::new(w_row.xyz().dot(first), w_row.xyz().dot(second)) * (view.moments[0] / w),
+        pixel: Pixel::default(),
         least: ANTUMBRA_NARROWEST / wide.max(ANTUMBRA_SPREAD_SMALLEST),
         most: view.moments[1].max(ANTUMBRA_NARROWEST) / wide.max(ANTUMBRA_SPREAD_SMALLEST),
         shape: key.shape,

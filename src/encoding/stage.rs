@@ -7,7 +7,7 @@
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
 use crate::error::{FitError, finite};
-use crate::frame::Pcf;
+use crate::frame::{Pcf, ViewUniforms};
 use crate::texel::{MomentKind, Moments, Texel};
 
 /// What a map stores, and how it is read.
@@ -114,6 +114,14 @@ impl Encoding {
             Self::Depth(filter) => (Texel::Depth, *filter),
             Self::Moments(prefilter) => (Texel::Moments(prefilter.moments), Pcf::Hardware2x2),
             Self::Soft { .. } => (Texel::Depth, Pcf::Pcss),
+        }
+    }
+
+    /// Level of the mip chain up to which a view's map is made.
+    pub(crate) const fn levels(&self, view: &ViewUniforms) -> f32 {
+        match self {
+            Self::Moments(_) => view.moments[1],
+            Self::Depth(_) | Self::Soft { .. } => 0.0,
         }
     }
 

@@ -161,6 +161,9 @@ impl Fitter<'_> {
         if let Some(angle) = self.encoding.angle() {
             self.penumbra(angle, bias.texel, bias.depth_range, &mut uniforms, frame);
         }
+        if self.encoding.key().1 == Pcf::Pixel {
+            self.pixel(&mut uniforms);
+        }
         let squares = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length_squared);
         let same = window.bend.is_none().then(|| (texel * texel).to_array());
         let mut extremes =
@@ -179,7 +182,7 @@ impl Fitter<'_> {
             domain: extremes.domain,
             content: Content::Redraw,
             blur,
-            place: Place { levels: uniforms.moments[1], ..self.place(window, texel, depth) },
+            place: Place { levels: self.encoding.levels(&uniforms), ..self.place(window, texel, depth) },
             split: self.split,
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));

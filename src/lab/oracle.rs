@@ -263,11 +263,12 @@ struct Taps {
 
 impl Taps {
     /// A box as wide as the filter, at `at` texels from the map's edge,
-    /// over texels as points that bilinear weights widen. A disc is the box of its variance; the light is a point.
+    /// over texels as points that bilinear weights widen. A disc is the box of its variance; the light is a point, and so is
+    /// the pixel.
     fn of(filter: Pcf, at: f64) -> Self {
         let width = match filter {
             Pcf::Point => return Self { first: at.floor() as i64, ends: [1.0, 0.0], count: 1, between: 0.0 },
-            Pcf::Hardware2x2 | Pcf::Pcss => 1,
+            Pcf::Hardware2x2 | Pcf::Pcss | Pcf::Pixel => 1,
             Pcf::Box3x3 => 3,
             Pcf::Box5x5 | Pcf::Disc => 5,
             Pcf::Box7x7 => 7,

@@ -20,14 +20,15 @@ fn is_disc(key: WgslKey) -> bool {
     key.texel == Texel::Depth && key.filter.is_disc()
 }
 
-/// The text of a lookup's struct, with a member that says how taps are spread for filters that have a disc.
+/// The text of a lookup's struct, with a member that says how taps are spread for filters that need it.
 pub(super) fn map(key: WgslKey, text: &'static str) -> ArrayVec<Cow<'static, str>, 2> {
     const SLOPE: &str = "    slope: vec2f,\n";
     const SPREAD: &str = "    slope: vec2f,\n    // How taps are spread around it.\n    spread: AntumbraSpread,\n";
-    if !is_disc(key) {
+    if key.texel != Texel::Depth || !key.filter.is_spread() {
         return core::iter::once(text.into()).collect();
     }
     let spread = match key.filter {
+        Pcf::Pixel => include_str!("../../shaders/spread_pixel.wgsl"),
         Pcf::Pcss => include_str!("../../shaders/spread_soft.wgsl"),
         _ => include_str!("../../shaders/spread_disc.wgsl"),
     };

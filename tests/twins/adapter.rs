@@ -68,14 +68,23 @@ pub(crate) fn fill(gpu: &Gpu, maps: &ShadowMaps, view: &ShadowView, depth: &[f32
     gpu.queue().submit([encoder.finish()]);
 }
 
+/// How a library is given a lookup.
+const GIVEN: &str = "
+    fn given(case_: Case) -> AntumbraLookup {
+        return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy); }";
+
 /// Calls of a library whose filter has no disc.
 const STEADY: &str = "
-    fn given(case_: Case) -> AntumbraLookup {
-        return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy); }
     fn visible(view: AntumbraView, position: vec3f, normal: vec3f, noise: f32) -> f32 {
         return antumbra_visible(view, antumbra_map, antumbra_compare, position, normal); }
     fn visibility(position: vec3f, normal: vec3f, noise: f32) -> f32 {
         return antumbra_visibility(position, normal, 1.0); }";
+
+/// How a library whose filter follows the pixel is given a lookup.
+const GIVEN_PIXEL: &str = "
+    fn given(case_: Case) -> AntumbraLookup {
+        let spread = antumbra_spread(case_.view, case_.position.xyz, case_.normal.xyz);
+        return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy, spread); }";
 
 /// Calls of a library whose filter has one.
 const NOISY: &str = "
@@ -98,12 +107,13 @@ fn text(key: WgslKey) -> String {
     let row_of_four = "fn row(look: AntumbraLookup, x: vec3f, weight: vec3f, y: f32) -> f32 {
         return antumbra_box_row_of_four(antumbra_map, antumbra_compare, look, x.xyzx, weight.xyzx, y); }";
     let [tap, row] = match key.filter {
-        Pcf::Point | Pcf::Hardware2x2 => [no_tap, no_row],
+        Pcf::Point | Pcf::Hardware2x2 | Pcf::Pixel => [no_tap, no_row],
         Pcf::Box3x3 | Pcf::Disc | Pcf::Pcss => [tap, no_row],
         Pcf::Box5x5 => [tap, row],
         Pcf::Box7x7 => [tap, row_of_four],
     };
-    let noisy = if key.filter.is_disc() { NOISY } else { STEADY };
+    let (given, calls) = if key.filter == Pcf::Pixel { (GIVEN_PIXEL, STEADY) } else { (GIVEN, STEADY) };
+    let [given, noisy] = if key.filter.is_disc() { ["", NOISY] } else { [given, calls] };
     let looks = match key.shape {
         MapShape::Affine => {
             "fn lookup(view: AntumbraView, position: vec3f, normal: vec3f) -> AntumbraLookup {
@@ -123,7 +133,7 @@ fn text(key: WgslKey) -> String {
     };
     let looks = &looks.replace("LIT", lit);
     let library = wgsl::module(key, Bindings { group: 1, first: 0 });
-    [library.as_str(), include_str!("cases.wgsl"), looks, tap, row, noisy].join("\n")
+    [library.as_str(), include_str!("cases.wgsl"), looks, tap, row, given, noisy].join("\n")
 }
 
 /// Runs the cases on the adapter.

@@ -1,6 +1,8 @@
 //! How far a shader's lookup may be from its twin.
 
 use antumbra::encoding::depth::{Lookup, antumbra_lookup, antumbra_lookup_projective};
+use antumbra::encoding::pixel::antumbra_spread_pixel;
+use antumbra::encoding::spread::Spread;
 use antumbra::{MapShape, Pcf, ViewUniforms, WgslKey};
 use glam::{Vec3, Vec4};
 
@@ -127,3 +129,48 @@ pub(crate) fn spread(view: &ViewUniforms, position: Vec3) -> f64 {
     // A view without any texels has no taps to be off.
     if lost.is_finite() { 16.0 * ULP * (lost + off_w + 1.0) } else { 0.0 }
 }
+
+/// By how much taps over a pixel may be off beside the lookup itself, texture coordinates and depth: what nudging the
+/// receiver and its normal by a few steps of f32 does to them. `None` where rounding decides about everything.
+pub(crate) fn pixel(view: &ViewUniforms, position: Vec3, normal: Vec3, look: &Lookup) -> Option<([f64; 2], f64)> {
+    let places = |spread: &Spread| {
+        let steps = [spread.pixel.first, -spread.pixel.first, spread.pixel.second, -spread.pixel.second];
+        steps.map(|step| {
+            let [before, w] = [spread.w, spread.w + step.z].map(f64::from);
+            let [law_before, law] = match spread.shape {
+                MapShape::ProjectiveDepth => [before, w],
+                MapShape::Affine | MapShape::Projective => [1.0, 1.0],
+            };
+            if w <= 0.5 * before {
+                return [f64::from(look.uv.x), f64::from(look.uv.y), f64::from(look.depth)]
+                    .map(|place| place.clamp(-1.0, 2.0));
+            }
+            let uv = (look.uv.as_dvec2() * before + step.truncate().truncate().as_dvec2()) / w;
+            let depth = (f64::from(look.depth) * law_before + f64::from(step.w)) / law;
+            // What lies beyond the map is not read, wherever it is.
+            [uv.x, uv.y, depth].map(|place| place.clamp(-1.0, 2.0))
+        })
+    };
+    let spread = |position, normal| antumbra_spread_pixel(look.spread.shape, view, position, normal);
+    let exact = places(&spread(position, normal));
+    let size = position.abs().max(Vec4::from_array(view.moments).truncate().abs()).max_element();
+    let mut off = [0.0_f64; 3];
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
+        let nudge = axis * (NUDGE * ULP) as f32;
+        // Receivers without a normal have none in the shader either.
+        let nudged = if normal == Vec3::ZERO { normal } else { normal + nudge };
+        for moved in [spread(position + nudge * size, normal), spread(position, nudged)] {
+            for (place, exact) in places(&moved).iter().zip(&exact) {
+                for (off, (place, exact)) in off.iter_mut().zip(place.iter().zip(exact)) {
+                    *off = off.max((place - exact).abs() + 8.0 * ULP * exact.abs());
+                }
+            }
+        }
+    }
+    let texel = f64::from(view.bias[3]);
+    let decided = off.iter().all(|off| off.is_finite()) && (texel == 0.0 || off[0].max(off[1]) <= 0.25 * texel);
+    decided.then_some(([off[0], off[1]], off[2]))
+}
+
+/// Steps of f32 that a receiver is nudged by: as many operations as there are on the way to its taps.
+const NUDGE: f64 = 24.0;

@@ -5,6 +5,7 @@ use antumbra::encoding::depth::{
     antumbra_tap, antumbra_visible_noisy,
 };
 use antumbra::encoding::pcf::antumbra_box_row_of_four;
+use antumbra::encoding::pixel::{Pixel, antumbra_pixel_tap};
 use antumbra::encoding::spread::antumbra_spread;
 use antumbra::{Pcf, ViewUniforms, WgslKey};
 use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
@@ -71,10 +72,10 @@ impl Doubt {
     /// `None` where rounding decides about everything.
     pub(crate) fn of(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Option<Self> {
         let (look, bound) = bound::lookup(key, view, position, normal)?;
-        let look = Lookup { spread: antumbra_spread(key, view, position, noise), ..look };
+        let look = Lookup { spread: antumbra_spread(key, view, position, normal, noise), ..look };
         let (turned, reach) = (off_by_turning(key, view, position), key.filter.reach());
         // Beside the lookup's own error, what the filter does to it.
-        let uv = core::array::from_fn(|axis| {
+        let uv: [f64; 2] = core::array::from_fn(|axis| {
             bound.uv[axis] + 8.0 * ULP * (f64::from(look.uv[axis]).abs() + 1.0) + turned * f64::from(view.bias[3])
         });
         let slope = f64::from(look.slope.abs().element_sum());
@@ -82,6 +83,11 @@ impl Doubt {
             + (reach + 1.0) * (bound.slope[0] + bound.slope[1])
             + 8.0 * ULP * (f64::from(look.depth.abs()) + (0.25 * reach).max(1.0) * slope)
             + turned * slope;
+        let (more_uv, more_depth) = match key.filter {
+            Pcf::Pixel => bound::pixel(view, position, normal, &look)?,
+            _ => ([0.0; 2], 0.0),
+        };
+        let (uv, depth) = ([uv[0] + more_uv[0], uv[1] + more_uv[1]], depth + more_depth);
         Some(Self { look, uv, depth })
     }
 
@@ -92,7 +98,7 @@ impl Doubt {
 
     /// Least and largest value that a filter may have.
     pub(crate) fn band(&self, filter: Pcf, map: &impl CompareMap) -> (f32, f32) {
-        band(&self.look, self.uv, self.depth, |look| antumbra_filter(filter, map, look))
+        filter_band(filter, map, &self.look, self.uv, self.depth)
     }
 }
 
@@ -108,6 +114,17 @@ fn off_by_turning(key: WgslKey, view: &ViewUniforms, position: Vec3) -> f64 {
         Pcf::Pcss => radius * (TURNED_OFF + bound::spread(view, position)),
         _ => 0.0,
     }
+}
+
+/// Least and largest value that a filter may have: taps over a pixel are in doubt one by one.
+fn filter_band(filter: Pcf, map: &impl CompareMap, look: &Lookup, uv: [f64; 2], depth: f64) -> (f32, f32) {
+    if filter != Pcf::Pixel {
+        return band(look, uv, depth, |look| antumbra_filter(filter, map, look));
+    }
+    let Pixel { first, second, .. } = look.spread.pixel;
+    let taps = [first, -first, second, -second];
+    let bands = taps.map(|step| band(look, uv, depth, |look| antumbra_pixel_tap(map, look, step)));
+    bands.iter().fold((0.0, 0.0), |(low, high), band| (low + 0.25 * band.0, high + 0.25 * band.1))
 }
 
 /// Values of a function of a lookup on all sides of what rounding may do to it.
@@ -127,12 +144,12 @@ fn band(look: &Lookup, uv: [f64; 2], depth: f64, value: impl Fn(&Lookup) -> f32)
 }
 
 pub(crate) fn filters(key: WgslKey, map: &DepthMap, case: &Case, outcome: &Outcome, worst: &mut Worst) {
-    let (filter, position) = (key.filter, case.position.truncate());
+    let (filter, position, normal) = (key.filter, case.position.truncate(), case.normal.truncate());
     let look = Lookup {
         uv: Vec2::new(case.look.x, case.look.y),
         depth: case.look.z,
         slope: Vec2::new(case.slope_offset.x, case.slope_offset.y),
-        spread: antumbra_spread(key, &case.view, position, case.look.w),
+        spread: antumbra_spread(key, &case.view, position, normal, case.look.w),
     };
     // Coordinates are scaled by the size and moved by half a texel; depths move along the slope by up to a reach.
     let (side, reach, turned) =
@@ -144,6 +161,15 @@ pub(crate) fn filters(key: WgslKey, map: &DepthMap, case: &Case, outcome: &Outco
     let uv = [look.uv.x, look.uv.y].map(|place| 8.0 * ULP * (f64::from(place).abs() + reach / side) + turned / side);
     let slope = f64::from(look.slope.abs().element_sum());
     let depth = 8.0 * ULP * (f64::from(look.depth.abs()) + reach * slope) + turned * slope;
+    if filter == Pcf::Pixel {
+        let Some((more_uv, more_depth)) = bound::pixel(&case.view, position, normal, &look) else {
+            worst.unspread += 1;
+            return;
+        };
+        let band = filter_band(filter, map, &look, [uv[0] + more_uv[0], uv[1] + more_uv[1]], depth + more_depth);
+        within("filter", outcome.filtered, band, 1.0, case, worst);
+        return;
+    }
     let mut check = |name: &str, shader: f32, scale: f32, value: &dyn Fn(&Lookup) -> f32| {
         within(name, shader, band(&look, uv, depth, value), scale, case, worst);
     };

@@ -40,7 +40,7 @@ fn twins_agree_on_several_maps() {
     let Some(gpu) = support::gpu() else { return };
     for shape in MapShape::ALL {
         for (select, blend) in Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]) {
-            for filter in [Pcf::Hardware2x2, Pcf::Box3x3, Pcf::Disc, Pcf::Pcss] {
+            for filter in [Pcf::Hardware2x2, Pcf::Box3x3, Pcf::Pixel, Pcf::Disc, Pcf::Pcss] {
                 let key = WgslKey { texel: Texel::Depth, filter, shape, maps: MAPS, select, blend };
                 // All maps in use, and one left over.
                 for views in [MAPS, MAPS - 1] {

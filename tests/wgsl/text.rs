@@ -123,7 +123,7 @@ fn samples_per_lookup() {
             (Texel::Moments(moments), _) if !moments.linear => 0,
             // In a loop over the points of a disc.
             (Texel::Moments(_), _) | (_, Pcf::Point | Pcf::Hardware2x2 | Pcf::Disc | Pcf::Pcss) => 1,
-            (_, Pcf::Box3x3) => 4,
+            (_, Pcf::Box3x3 | Pcf::Pixel) => 4,
             (_, Pcf::Box5x5) => 9,
             (_, Pcf::Box7x7) => 16,
         };
