@@ -38,6 +38,8 @@ pub struct Spread {
     pub least: f32,
     /// Greatest such distance.
     pub most: f32,
+    /// How a lookup's texture coordinates and depth go back for each texel that a disc is narrower than the widest one.
+    pub back: Vec3,
     /// What depths are multiplied by; the shader's text knows it.
     pub shape: MapShape,
 }
@@ -80,6 +82,7 @@ pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, noise:
         fade: Vec2::new(w_row.xyz().dot(first), w_row.xyz().dot(second)) * (view.moments[0] / w),
         least: ANTUMBRA_NARROWEST / wide.max(ANTUMBRA_SPREAD_SMALLEST),
         most: view.moments[1].max(ANTUMBRA_NARROWEST) / wide.max(ANTUMBRA_SPREAD_SMALLEST),
+        back: Vec3::ZERO,
         shape: key.shape,
     }
 }

@@ -166,6 +166,7 @@ impl Fitter<'_> {
         let mut extremes =
             extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| squares(vertex)));
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
+        self.bleeding(extremes.world[1], &cull, &mut uniforms, frame);
         self.report(window, margin, frame);
         let (ring, corner, drawn_side) = (texels.ring, self.tile.corner, self.tile.side - 2 * texels.ring);
         let view = ShadowView {
