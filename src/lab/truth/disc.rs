@@ -10,8 +10,8 @@ use glam::DVec3;
 use crate::lab::bvh::Ray;
 use crate::lab::shapes::Random;
 
-/// Rays to the disc from a pixel's centre. A straight edge across the disc is then off by a few thousandths (the tests
-/// have a bound); 16 would leave four times as much, 256 would cost four times the time.
+/// Rays to the disc from a pixel's centre. The share above a straight edge is then off by 0.01 in the mean
+/// (`tests/soft_truth.rs`); 16 would leave three times as much, 256 would cost four times the time.
 pub(super) const CENTRE_RAYS: u32 = 64;
 
 /// Rays to the disc from each sample of a pixel's area, each turned by another angle: 256 in all at least.
