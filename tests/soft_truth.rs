@@ -18,7 +18,7 @@ use antumbra::lab::truth::{Truth, TruthCache};
 use antumbra::{Encoding, Pcf, Remix, SUN_ANGLE, techniques};
 use glam::DVec3;
 
-/// Pixels of the pictures: a soft truth is thirty times as many rays as a hard one.
+/// Pixels of the pictures: a soft truth is at least ten times as many rays as a hard one.
 const PICTURE: [u32; 2] = [400, 300];
 
 /// Half the side of the ground, world units.
