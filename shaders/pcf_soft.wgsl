@@ -15,8 +15,8 @@ fn antumbra_soft_offset(spread: AntumbraSpread, point: vec2f, apart: f32) -> vec
     return (spread.along * point.x + spread.across * point.y) * apart;
 }
 
-// A lookup whose bias is that of a disc of this radius, texels. That of the widest one, along the normal of surfaces that
-// graze the light, would carry them into the shadow of whatever stands beside them.
+// A lookup whose bias is that of a disc of this radius, texels. That of the widest one, along the normal of surfaces
+// that graze the light, would carry them into the shadow of whatever stands beside them.
 fn antumbra_settled(look: AntumbraLookup, radius: f32) -> AntumbraLookup {
     let back = look.spread.back * max(ANTUMBRA_REACH - ANTUMBRA_TAP_REACH - radius, 0.0);
     var settled = look;

@@ -1,5 +1,5 @@
-//! Penumbras against ray-traced truth: that truth is held against a penumbra that is known, and soft shadows against it,
-//! beside the hard ones of the same map. On a row of columns, and on the shared case of one (where `ANTUMBRA_SCENES`
+//! Penumbras against ray-traced truth: that truth is held against a penumbra that is known, and soft shadows against
+//! it, beside the hard ones of the same map. On a row of columns, and on the shared case of one (where `ANTUMBRA_SCENES`
 //! names the folder of scenes beside the cases).
 
 mod support;
@@ -117,8 +117,8 @@ fn a_walls_penumbra_is_what_geometry_says() {
 struct Against {
     rmse: f64,
     mae: f64,
-    /// Shares of the valid pixels that are darker and lighter than the truth by more than ¼, more than 2 pixels from any
-    /// penumbra.
+    /// Shares of the valid pixels that are darker and lighter than the truth by more than ¼, more than 2 pixels from
+    /// any penumbra.
     darker: f64,
     lighter: f64,
 }
@@ -138,7 +138,7 @@ impl Against {
     }
 }
 
-/// The masks of one focused map, read softly, by its nearest texel, by four and by sixteen, against the truth of that light.
+/// The masks of one focused map, read softly, by its nearest texel, by four and by sixteen, against its truth.
 fn measure(case: &Case, subject: &Subject, side: u32, angle: f32) -> [Against; 4] {
     let (truth, _) = TruthCache::default().soft(case, &subject.model, f64::from(angle), &|| ());
     let mut backend = Backend::Cpu;

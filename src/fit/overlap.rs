@@ -60,7 +60,7 @@ impl Fitter<'_> {
 }
 
 /// Whether light of this direction sees all boxes farther apart than `gap`, world units; no for more than
-/// [`MOST_CASTERS`]. O(boxes) for one side of a pair, O(1) in all.
+/// [`MOST_CASTERS`]. O(1) for each box.
 fn lie_apart<'a>(travel: DVec3, boxes: impl Iterator<Item = &'a Aabb>, gap: f64) -> bool {
     let across = DVec3::AXES.map(|edge| travel.cross(edge));
     // Middle and half the extent along each of the three.
@@ -95,7 +95,7 @@ mod tests {
         // Above one another, or not, as the light falls.
         let high = [cube(0.0, 0.0), cube(3.0, 5.0)];
         assert!(apart(DVec3::NEG_Y, &high, 0.5) && !apart(DVec3::new(-3.0, -5.0, 0.0), &high, 0.5));
-        // Along a diagonal neither their bounds in space nor those of their shadows tell them apart, but their hexagons.
+        // Along a diagonal neither their bounds in space nor those of their shadows tell them apart: their hexagons.
         let steps = [cube(0.0, 0.0), cube(1.2, 1.2)];
         assert!(apart(DVec3::new(1.0, -1.0, 0.0), &steps, 0.2) && !apart(DVec3::new(1.0, -1.0, 0.0), &steps, 0.4));
         // A row of as many as are compared, and one more.

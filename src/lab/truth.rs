@@ -57,7 +57,8 @@ pub struct Truth {
     pub height: u32,
     /// Whether shadows can be judged here: geometry at the pixel's centre, turned towards the light.
     pub valid: Vec<bool>,
-    /// Light at the pixel's centre, 0 or 1, or between them where the light has a size. Without meaning where not valid: 1 without geometry, 0 turned away.
+    /// Light at the pixel's centre, 0 or 1, or between them where the light has a size. Without meaning where not
+    /// valid: 1 without geometry, 0 turned away.
     pub centre: Vec<f32>,
     /// Mean light over the pixel, 0 to 1; same as `centre` where not valid.
     pub area: Vec<f32>,
