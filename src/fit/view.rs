@@ -185,8 +185,7 @@ impl Fitter<'_> {
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
         let content = before.map_or(Content::Redraw, |before| Content::since(&before.place, &view.place));
-        let view = ShadowView { content, ..view };
-        if frame.views.try_push(view).is_ok() {
+        if frame.views.try_push(ShadowView { content, ..view }).is_ok() {
             frame.uniforms.views[usize::from(self.index)] = uniforms;
             frame.uniforms.counts[0] += 1;
         }

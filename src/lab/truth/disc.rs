@@ -34,7 +34,7 @@ impl LightDisc {
     /// that it starts on. What lies below the surface's plane does not count: there the surface turns away, and nothing
     /// shades it. `place` picks the turn of the rays: any two numbers that are the same on every run.
     pub(super) fn mean(
-        &self,
+        self,
         middle: &Ray,
         normal: DVec3,
         count: u32,
