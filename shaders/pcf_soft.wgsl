@@ -15,6 +15,16 @@ fn antumbra_soft_offset(spread: AntumbraSpread, point: vec2f, apart: f32) -> vec
     return (spread.along * point.x + spread.across * point.y) * apart;
 }
 
+// A lookup whose bias is that of a disc of this radius, texels. That of the widest one, along the normal of surfaces
+// that graze the light, would carry them into the shadow of whatever stands beside them.
+fn antumbra_settled(look: AntumbraLookup, radius: f32) -> AntumbraLookup {
+    let back = look.spread.back * max(ANTUMBRA_REACH - ANTUMBRA_TAP_REACH - radius, 0.0);
+    var settled = look;
+    settled.uv += back.xy;
+    settled.depth += back.z;
+    return settled;
+}
+
 // How far casters are from the receiver on the average, in linear light depth; -1 where there are none. It looks as far
 // as a caster's penumbra could reach that is at the light's end of the map, and no less far than the filter reads.
 fn antumbra_caster_distance(map: texture_depth_2d, look: AntumbraLookup, turned: vec2f) -> f32 {
@@ -43,16 +53,18 @@ fn antumbra_caster_distance(map: texture_depth_2d, look: AntumbraLookup, turned:
 // Percentage-closer soft shadows (Fernando 2005): the farther away casters are, the wider the disc.
 fn antumbra_filter(map: texture_depth_2d, compare: sampler_comparison, look: AntumbraLookup) -> f32 {
     let turned = antumbra_turned(look.spread.noise);
-    let found = antumbra_caster_distance(map, look, turned);
+    // Where a surface that grazes the light is taken for a caster of its own, it is a near one: the disc stays narrow.
+    let found = antumbra_caster_distance(map, antumbra_settled(look, 0.0), turned);
     if (found < 0.0) {
         return 1.0;
     }
     let apart = clamp(found, look.spread.least, look.spread.most);
+    let settled = antumbra_settled(look, ANTUMBRA_NARROWEST * apart / look.spread.least);
     var direction = turned;
     var lit = 0.0;
     for (var index = 0u; index < ANTUMBRA_DISC_TAPS; index++) {
         let point = direction * antumbra_out(index, ANTUMBRA_DISC_TAPS);
-        lit += antumbra_tap(map, compare, look, antumbra_soft_offset(look.spread, point, apart));
+        lit += antumbra_tap(map, compare, settled, antumbra_soft_offset(look.spread, point, apart));
         direction = antumbra_next(direction);
     }
     return lit / f32(ANTUMBRA_DISC_TAPS);

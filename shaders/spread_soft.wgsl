@@ -13,6 +13,8 @@ struct AntumbraSpread {
     // Least and greatest distance between caster and receiver whose penumbra the map shows as wide as it is.
     least: f32,
     most: f32,
+    // How a lookup's texture coordinates and depth go back for each texel that a disc is narrower than the widest one.
+    back: vec3f,
 }
 
 // Below every length that is divided by.

@@ -28,6 +28,8 @@ pub enum Part {
     Texels(u8),
     /// Width of the penumbras of a view.
     Penumbra(u8),
+    /// Reduction of light bleeding ([`Prefilter::dark`](crate::Prefilter::dark)) in a view.
+    Bleeding(u8),
 }
 
 /// Why it was left out.
@@ -126,6 +128,9 @@ pub enum Why {
         /// Distance between caster and receiver up to which penumbras are as wide as they should be, world units.
         apart: f64,
     },
+    /// No two casters lie above one another as the light sees them, nor as near as what is blurred together
+    /// (`scene.objects`, each taken for one caster): no light bleeds, and penumbras keep their outer part.
+    NothingOverlaps,
     /// The map is fitted to the whole scene, which does not move with the camera: there is nothing to snap.
     AlreadyStill,
     /// The published strength is predicted to be worse than no warp.
@@ -168,6 +173,7 @@ impl fmt::Display for Part {
             Self::Warp(index) => write!(f, "view {index}, warp"),
             Self::Texels(index) => write!(f, "view {index}, texels"),
             Self::Penumbra(index) => write!(f, "view {index}, penumbra"),
+            Self::Bleeding(index) => write!(f, "view {index}, reduction of bleeding"),
         }
     }
 }
@@ -212,6 +218,7 @@ impl fmt::Display for Why {
             Self::PenumbraTooWide { apart } => {
                 write!(f, "no wider than that of casters {apart:.3} from their receivers")
             }
+            Self::NothingOverlaps => write!(f, "no casters lie above one another: no light bleeds"),
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }
     }

@@ -78,7 +78,9 @@ impl Aabb {
     }
 }
 
-/// One object of the engine, for bounds that are tighter than the scene's.
+/// One object of the engine, for bounds that are tighter than the scene's. It is taken for one caster, that does not
+/// lie above itself as the light sees it ([`Prefilter::dark`](crate::Prefilter::dark) is left out where no objects
+/// overlap): give what does in parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Object {
     /// Its bounds, world space.

@@ -186,7 +186,7 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
 fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
     let Texel::Moments(moments) = key.texel else {
         return core::iter::once(match key.shape {
-            _ if key.filter.is_disc() => disc::look(key.shape),
+            _ if key.filter.is_disc() => disc::look(key),
             MapShape::Affine if key.filter == Pcf::Pixel => include_str!("../shaders/look_affine_pixel.wgsl"),
             _ if key.filter == Pcf::Pixel => include_str!("../shaders/look_projective_pixel.wgsl"),
             MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),

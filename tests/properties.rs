@@ -3,7 +3,10 @@
 
 mod common;
 
-use antumbra::{Aabb, FitError, Light, Remix, ShadowFrame, ShadowTechnique, Stabilise, techniques};
+use antumbra::{
+    Aabb, Encoding, FitError, Light, MomentFormat, MomentKind, Moments, Prefilter, Remix, ShadowFrame, ShadowTechnique,
+    Stabilise, techniques,
+};
 use common::tally::Tally;
 use common::{Inputs, all_finite, caster, direction, in_view, inputs, receiver, shares, sound};
 use glam::{DVec3, DVec4};
@@ -11,7 +14,11 @@ use proptest::prelude::*;
 
 /// Every remix that there is so far.
 fn remixes() -> impl Strategy<Value = Remix> {
-    let named = prop::sample::select(vec![techniques::ssm(), techniques::fsm()]);
+    // Moments whose bleeding is reduced look at objects in pairs.
+    let variance = Moments::new(MomentKind::Variance, MomentFormat::Float32);
+    let encoding = Encoding::Moments(Prefilter { dark: 0.3, ..Prefilter::of(variance) });
+    let moments = Remix { encoding, ..techniques::fsm() };
+    let named = prop::sample::select(vec![techniques::ssm(), techniques::fsm(), moments]);
     (named, any::<bool>()).prop_map(|(remix, snap)| Remix {
         stabilise: if snap { Stabilise::SnapTexels } else { Stabilise::Off },
         ..remix

@@ -13,7 +13,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 pub use super::pcf::{antumbra_box_row, antumbra_filter, antumbra_tap};
 use super::read::{antumbra_filtered, antumbra_level};
 use super::spread::{Spread, antumbra_spread};
-use crate::frame::{MapShape, ViewUniforms, WgslKey};
+use crate::frame::{MapShape, Pcf, ViewUniforms, WgslKey};
 use crate::texel::Texel;
 
 /// A depth map that can be compared with, as a comparison sampler does it.
@@ -203,11 +203,17 @@ pub fn antumbra_look_noisy(key: WgslKey, view: &ViewUniforms, position: Vec3, no
         Texel::Depth => 0.0,
     };
     let (reach, tap_reach) = (key.filter.reach() as f32 + wider, key.filter.tap_reach() as f32 + wider);
-    let look = match key.shape {
+    let lookup = |reach| match key.shape {
         MapShape::Affine => antumbra_lookup(view, position, normal, reach, tap_reach),
         shape => antumbra_lookup_projective(shape, view, position, normal, reach, tap_reach),
     };
-    Lookup { spread: antumbra_spread(key, view, position, normal, noise), ..look }
+    let (look, mut spread) = (lookup(reach), antumbra_spread(key, view, position, normal, noise));
+    if key.filter == Pcf::Pcss {
+        let near = lookup(tap_reach);
+        let depth = if key.shape == MapShape::Affine { near.depth - look.depth } else { 0.0 };
+        spread.back = (near.uv - look.uv).extend(depth) / (reach - tap_reach);
+    }
+    Lookup { spread, ..look }
 }
 
 /// Twin of `antumbra_caster_depth`.

@@ -8,7 +8,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::depth::{CompareMap, Lookup, antumbra_law};
-use super::spread::Spread;
+use super::spread::{ANTUMBRA_NARROWEST, Spread};
 use crate::frame::Pcf;
 
 /// Twin of `antumbra_tap`: one bilinear comparison at `offset` texels, against the receiver's own plane there.
@@ -147,6 +147,14 @@ pub fn antumbra_soft_offset(spread: &Spread, point: Vec2, apart: f32) -> Vec2 {
     (spread.along * point.x + spread.across * point.y) * apart
 }
 
+/// Twin of `antumbra_settled`: a lookup whose bias is that of a disc of this radius, texels, instead of the widest one.
+#[must_use]
+pub fn antumbra_settled(look: &Lookup, radius: f32) -> Lookup {
+    let widest = (Pcf::Pcss.reach() - Pcf::Pcss.tap_reach()) as f32;
+    let back = look.spread.back * (widest - radius).max(0.0);
+    Lookup { uv: look.uv + back.truncate(), depth: look.depth + back.z, ..*look }
+}
+
 /// Twin of `antumbra_caster_distance`: how far casters are from the receiver on the average, in linear light depth; -1
 /// where there are none.
 #[must_use]
@@ -169,12 +177,13 @@ pub fn antumbra_caster_distance(map: &impl CompareMap, look: &Lookup, turned: Ve
 
 fn soft(map: &impl CompareMap, look: &Lookup) -> f32 {
     let (turned, spread, count) = (antumbra_turned(look.spread.noise), &look.spread, Pcf::Pcss.samples());
-    let found = antumbra_caster_distance(map, look, turned);
+    let found = antumbra_caster_distance(map, &antumbra_settled(look, 0.0), turned);
     if found < 0.0 {
         return 1.0;
     }
     let apart = found.max(spread.least).min(spread.most);
-    let tap = |point| antumbra_tap(map, look, antumbra_soft_offset(spread, point, apart));
+    let settled = antumbra_settled(look, ANTUMBRA_NARROWEST * apart / spread.least);
+    let tap = |point| antumbra_tap(map, &settled, antumbra_soft_offset(spread, point, apart));
     points(turned, count).map(tap).sum::<f32>() / count as f32
 }
 

@@ -41,6 +41,8 @@ pub struct Spread {
     pub most: f32,
     /// The pixel's own part of the map, for filters that follow it.
     pub pixel: Pixel,
+    /// How a lookup's texture coordinates and depth go back for each texel that a disc is narrower than the widest one.
+    pub back: Vec3,
     /// What depths are multiplied by; the shader's text knows it.
     pub shape: MapShape,
 }
@@ -87,6 +89,7 @@ pub fn antumbra_spread(key: WgslKey, view: &ViewUniforms, position: Vec3, normal
         pixel: Pixel::default(),
         least: ANTUMBRA_NARROWEST / wide.max(ANTUMBRA_SPREAD_SMALLEST),
         most: view.moments[1].max(ANTUMBRA_NARROWEST) / wide.max(ANTUMBRA_SPREAD_SMALLEST),
+        back: Vec3::ZERO,
         shape: key.shape,
     }
 }

@@ -50,7 +50,9 @@ pub struct Prefilter {
     /// A bell of the same deviation instead of a box: smoother, 1.4 times as many texels.
     pub bell: bool,
     /// Light up to this share is taken for bleeding and removed, 0 (none) to 0.9. Penumbras lose their outer part with
-    /// it.
+    /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at once
+    /// when two begin to. An object is taken for one caster there: give what lies above itself, as the leaves of a tree
+    /// do, in parts. Without objects, and with more than 32 of them over a view, overlap is assumed.
     pub dark: f32,
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod cull;
 pub(crate) mod cuts;
 pub(crate) mod depth_range;
 pub(crate) mod layout;
+pub(crate) mod overlap;
 pub(crate) mod pixel;
 pub(crate) mod served;
 pub(crate) mod share;

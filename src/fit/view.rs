@@ -169,6 +169,7 @@ impl Fitter<'_> {
         let mut extremes =
             extremes(&input.camera, &body.vertices, input.origin, |vertex| same.unwrap_or_else(|| squares(vertex)));
         extremes.pixels.error = (0.5 * error / texels.over_window()).min(f64::from(f32::MAX)) as f32;
+        self.bleeding(extremes.world[1], &cull, &mut uniforms, frame);
         self.report(window, margin, frame);
         let (ring, corner, drawn_side) = (texels.ring, self.tile.corner, self.tile.side - 2 * texels.ring);
         let view = ShadowView {
@@ -187,8 +188,7 @@ impl Fitter<'_> {
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
         let content = before.map_or(Content::Redraw, |before| Content::since(&before.place, &view.place));
-        let view = ShadowView { content, ..view };
-        if frame.views.try_push(view).is_ok() {
+        if frame.views.try_push(ShadowView { content, ..view }).is_ok() {
             frame.uniforms.views[usize::from(self.index)] = uniforms;
             frame.uniforms.counts[0] += 1;
         }

@@ -11,10 +11,13 @@
 //! - Samples of the area that are not defined do not count: the area truth is the mean over the others.
 //! - 16 samples, jittered in a 4×4 grid; where they, the centre and the pixel's corners disagree, 64 more in an 8×8
 //!   grid. Centre and corners only ask for more, they are not part of the mean.
+//! - A light of some size ([`Truth::soft`]) lights by the share of its disc that is seen, of what of it is above the
+//!   surface's plane: 64 rays from the centre, 16 from each sample of the area. What is defined its middle says.
 //!
 //! The shadow distance of a case is a limit of techniques, not of light: truth ignores it.
 
 mod cache;
+mod disc;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -23,6 +26,7 @@ use super::bvh::{Bvh, Hit, Ray};
 use super::case::{Case, CaseLight};
 use super::scene::SceneModel;
 use super::shapes::Random;
+use disc::{AREA_RAYS, CENTRE_RAYS, LightDisc};
 
 pub use cache::{CACHE_VARIABLE, CacheUse, TruthCache};
 
@@ -53,7 +57,8 @@ pub struct Truth {
     pub height: u32,
     /// Whether shadows can be judged here: geometry at the pixel's centre, turned towards the light.
     pub valid: Vec<bool>,
-    /// Light at the pixel's centre, 0 or 1. Without meaning where not valid: 1 without geometry, 0 turned away.
+    /// Light at the pixel's centre, 0 or 1, or between them where the light has a size. Without meaning where not
+    /// valid: 1 without geometry, 0 turned away.
     pub centre: Vec<f32>,
     /// Mean light over the pixel, 0 to 1; same as `centre` where not valid.
     pub area: Vec<f32>,
@@ -80,7 +85,14 @@ impl Truth {
     /// Equal inputs give equal bits, however many threads there are. About 1.5 million rays per second and core.
     #[must_use]
     pub fn trace(case: &Case, scene: &SceneModel, on_row: &(dyn Fn() + Sync)) -> Self {
-        let tracer = Tracer::new(case, Bvh::new(scene));
+        Self::soft(case, scene, 0.0, on_row)
+    }
+
+    /// The same for a light that receivers see as a disc of this angular diameter, radians, 0 to 0.5: with penumbras.
+    /// At 0 it is [`trace`](Self::trace), to the bit. Ten times as many rays, in penumbras thirty.
+    #[must_use]
+    pub fn soft(case: &Case, scene: &SceneModel, angle: f64, on_row: &(dyn Fn() + Sync)) -> Self {
+        let tracer = Tracer::new(case, Bvh::new(scene), LightDisc::new(angle));
         let [width, height] = case.viewport;
         // Trace the rows in parallel and lay them out in order.
         let pixels: Vec<Pixel> = (0..height)
@@ -138,14 +150,15 @@ enum Sample {
     Nothing,
     /// Geometry that the light cannot reach, shadows or not.
     Unlit(Surface),
-    /// Geometry that is lit or in shadow.
-    Defined { surface: Surface, lit: bool },
+    /// Geometry that is lit or in shadow, or by a share.
+    Defined { surface: Surface, lit: f32 },
 }
 
 /// Traces samples of one case.
 struct Tracer<'c> {
     case: &'c Case,
     bvh: Bvh<'c>,
+    light: LightDisc,
     eye: DVec3,
     /// View ray at the upper left corner of the picture, and its change across the picture; eye depth 1.
     corner: DVec3,
@@ -154,7 +167,7 @@ struct Tracer<'c> {
 }
 
 impl<'c> Tracer<'c> {
-    fn new(case: &'c Case, bvh: Bvh<'c>) -> Self {
+    fn new(case: &'c Case, bvh: Bvh<'c>, light: LightDisc) -> Self {
         let world_from_view = case.world_from_view();
         let [left, right, lower, upper] = case.tangents();
         let ray = |x: f64, y: f64| world_from_view.transform_vector3(DVec3::new(x, y, -1.0));
@@ -162,14 +175,14 @@ impl<'c> Tracer<'c> {
         let [width, height] = case.viewport.map(f64::from);
         let across = (ray(right, upper) - corner) / width;
         let down = (ray(left, lower) - corner) / height;
-        Self { case, bvh, eye: case.camera.eye, corner, across, down }
+        Self { case, bvh, light, eye: case.camera.eye, corner, across, down }
     }
 
     /// Finds the truth of a pixel.
     fn pixel(&self, x: u32, y: u32) -> Pixel {
         let [left, top] = [x, y].map(f64::from);
         // Look through the centre; without a defined sample there the pixel is not valid.
-        let (surface, centre) = match self.sample(left + 0.5, top + 0.5) {
+        let (surface, centre) = match self.sample(left + 0.5, top + 0.5, CENTRE_RAYS) {
             Sample::Nothing => return Pixel { valid: false, centre: 1.0, area: 1.0, surface: None },
             Sample::Unlit(surface) => {
                 return Pixel { valid: false, centre: 0.0, area: 0.0, surface: Some(surface) };
@@ -182,15 +195,14 @@ impl<'c> Tracer<'c> {
         if !tally.agrees_with(centre) || self.corners_differ(centre, left, top) {
             self.add_grid(&mut tally, FINE_GRID, left, top);
         }
-        let centre = f32::from(u8::from(centre));
         Pixel { valid: true, centre, area: tally.mean().unwrap_or(centre), surface: Some(surface) }
     }
 
     /// Tells whether a corner of the pixel is defined and not as the centre: an edge may cut off less than one sample's
     /// share. The corners themselves do not count towards the mean; they would weigh its rim double.
-    fn corners_differ(&self, centre: bool, left: f64, top: f64) -> bool {
+    fn corners_differ(&self, centre: f32, left: f64, top: f64) -> bool {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-        corners.iter().any(|(x, y)| match self.sample(left + x, top + y) {
+        corners.iter().any(|(x, y)| match self.sample(left + x, top + y, AREA_RAYS) {
             Sample::Defined { lit, .. } => lit != centre,
             Sample::Nothing | Sample::Unlit(_) => false,
         })
@@ -203,15 +215,15 @@ impl<'c> Tracer<'c> {
             let [jitter_x, jitter_y] = jitter(left as u32, top as u32, side, cell);
             let x = left + (column + jitter_x) / f64::from(side);
             let y = top + (row + jitter_y) / f64::from(side);
-            if let Sample::Defined { lit, .. } = self.sample(x, y) {
-                tally.lit += u32::from(lit);
-                tally.count += 1;
+            if let Sample::Defined { lit, .. } = self.sample(x, y, AREA_RAYS) {
+                tally.lit += lit;
+                tally.count += 1.0;
             }
         }
     }
 
-    /// Looks through a point of the picture, in pixels from its upper left corner.
-    fn sample(&self, x: f64, y: f64) -> Sample {
+    /// Looks through a point of the picture, in pixels from its upper left corner, and from there at the light.
+    fn sample(&self, x: f64, y: f64, light_rays: u32) -> Sample {
         // The ray's third view coordinate is -1, so its parameter is eye depth.
         let direction = self.corner + self.across * x + self.down * y;
         let (t_min, t_max) = (self.case.camera.near, self.case.camera.far);
@@ -219,10 +231,9 @@ impl<'c> Tracer<'c> {
             return Sample::Nothing;
         };
         let surface = self.surface(&hit, direction);
-        match self.shadow_ray(&surface) {
-            Some(ray) => Sample::Defined { surface, lit: !self.bvh.is_blocked(&ray, Some(hit.triangle)) },
-            None => Sample::Unlit(surface),
-        }
+        let Some(ray) = self.shadow_ray(&surface) else { return Sample::Unlit(surface) };
+        let is_lit = |ray: &Ray| !self.bvh.is_blocked(ray, Some(hit.triangle));
+        Sample::Defined { surface, lit: self.light.mean(&ray, surface.normal, light_rays, [x, y], is_lit) }
     }
 
     fn surface(&self, hit: &Hit, direction: DVec3) -> Surface {
@@ -232,7 +243,7 @@ impl<'c> Tracer<'c> {
         Surface { position: self.eye + direction * hit.t, normal, depth: hit.t, triangle: hit.triangle }
     }
 
-    /// Returns the ray to the light; `None` where no light can come from, in shadow or not.
+    /// Returns the ray to the middle of the light; `None` where no light can come from, in shadow or not.
     fn shadow_ray(&self, surface: &Surface) -> Option<Ray> {
         let origin = surface.position;
         let start = SHADOW_START * self.bvh.radius();
@@ -257,21 +268,21 @@ impl<'c> Tracer<'c> {
     }
 }
 
-/// Counts defined samples.
+/// Counts defined samples. Numbers are whole and small where the light has no size: exact.
 #[derive(Default)]
 struct Tally {
-    lit: u32,
-    count: u32,
+    lit: f32,
+    count: f32,
 }
 
 impl Tally {
-    /// Tells whether all samples are lit, or all in shadow, as `lit` says.
-    fn agrees_with(&self, lit: bool) -> bool {
-        self.lit == if lit { self.count } else { 0 }
+    /// Tells whether the samples are as lit as the centre is.
+    fn agrees_with(&self, lit: f32) -> bool {
+        self.lit == lit * self.count
     }
 
     fn mean(&self) -> Option<f32> {
-        (self.count > 0).then(|| self.lit as f32 / self.count as f32)
+        (self.count > 0.0).then(|| self.lit / self.count)
     }
 }
 

@@ -36,10 +36,12 @@ pub(super) fn map(key: WgslKey, text: &'static str) -> ArrayVec<Cow<'static, str
 }
 
 /// Where a receiver is looked up, with a turn of the disc.
-pub(super) fn look(shape: MapShape) -> &'static str {
-    match shape {
-        MapShape::Affine => include_str!("../../shaders/look_affine_spread.wgsl"),
-        MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../../shaders/look_projective_spread.wgsl"),
+pub(super) fn look(key: WgslKey) -> &'static str {
+    match (key.shape, key.filter) {
+        (MapShape::Affine, Pcf::Pcss) => include_str!("../../shaders/look_affine_soft.wgsl"),
+        (_, Pcf::Pcss) => include_str!("../../shaders/look_projective_soft.wgsl"),
+        (MapShape::Affine, _) => include_str!("../../shaders/look_affine_spread.wgsl"),
+        _ => include_str!("../../shaders/look_projective_spread.wgsl"),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use antumbra::encoding::depth::{
     CompareMap, DepthMap, Lookup, antumbra_box_row, antumbra_caster, antumbra_caster_depth, antumbra_filter,
-    antumbra_tap, antumbra_visible_noisy,
+    antumbra_look_noisy, antumbra_tap, antumbra_visible_noisy,
 };
 use antumbra::encoding::pcf::antumbra_box_row_of_four;
 use antumbra::encoding::pixel::{Pixel, antumbra_pixel_tap};
@@ -72,7 +72,7 @@ impl Doubt {
     /// `None` where rounding decides about everything.
     pub(crate) fn of(key: WgslKey, view: &ViewUniforms, position: Vec3, normal: Vec3, noise: f32) -> Option<Self> {
         let (look, bound) = bound::lookup(key, view, position, normal)?;
-        let look = Lookup { spread: antumbra_spread(key, view, position, normal, noise), ..look };
+        let look = Lookup { spread: antumbra_look_noisy(key, view, position, normal, noise).spread, ..look };
         let (turned, reach) = (off_by_turning(key, view, position), key.filter.reach());
         // Beside the lookup's own error, what the filter does to it.
         let uv: [f64; 2] = core::array::from_fn(|axis| {

@@ -6,6 +6,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::disc::{AREA_RAYS, CENTRE_RAYS};
 use super::{COARSE_GRID, FINE_GRID, SHADOW_START, SURFACE_SINE, Truth};
 use crate::lab::case::Case;
 use crate::lab::scene::SceneModel;
@@ -47,13 +48,19 @@ impl TruthCache {
     /// Reads the truth of a case, or traces and stores it; `on_row` is called as by [`Truth::trace`].
     #[must_use]
     pub fn get(&self, case: &Case, scene: &SceneModel, on_row: &(dyn Fn() + Sync)) -> (Truth, CacheUse) {
-        let path = self.path(case, scene);
+        self.soft(case, scene, 0.0, on_row)
+    }
+
+    /// The same of [`Truth::soft`], for a light of this angular diameter, radians, 0 to 0.5.
+    #[must_use]
+    pub fn soft(&self, case: &Case, scene: &SceneModel, angle: f64, on_row: &(dyn Fn() + Sync)) -> (Truth, CacheUse) {
+        let path = self.soft_path(case, scene, angle);
         let [width, height] = case.viewport;
         let stored = std::fs::read(&path).ok().and_then(|content| decode(&content, width, height));
         if let Some(truth) = stored {
             return (truth, CacheUse::Read);
         }
-        let truth = Truth::trace(case, scene, on_row);
+        let truth = Truth::soft(case, scene, angle, on_row);
         let cache_use = match self.store(&path, &truth) {
             Ok(()) => CacheUse::Traced,
             Err(error) => CacheUse::NotStored(error.to_string()),
@@ -64,6 +71,12 @@ impl TruthCache {
     /// Returns the file for a case: a hash of geometry, camera, light, viewport and the rules of tracing.
     #[must_use]
     pub fn path(&self, case: &Case, scene: &SceneModel) -> PathBuf {
+        self.soft_path(case, scene, 0.0)
+    }
+
+    /// The same for a light of this angular diameter; that of lights without size does not depend on what only others
+    /// need.
+    fn soft_path(&self, case: &Case, scene: &SceneModel, angle: f64) -> PathBuf {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&VERSION.to_le_bytes());
         hasher.update(bytemuck::cast_slice(&[COARSE_GRID, FINE_GRID]));
@@ -71,6 +84,10 @@ impl TruthCache {
         // Debug text of f64 gives every bit back, so different cases differ.
         hasher.update(format!("{:?} {:?} {:?}", case.camera, case.light, case.viewport).as_bytes());
         scene.hash_content(&mut hasher);
+        if angle != 0.0 {
+            hasher.update(bytemuck::cast_slice(&[CENTRE_RAYS, AREA_RAYS]));
+            hasher.update(&angle.to_le_bytes());
+        }
         self.folder.join(format!("{}.truth", hasher.finalize().to_hex()))
     }
 
@@ -188,6 +205,11 @@ mod tests {
         let mut bent = scene.clone();
         bent.positions[0].x += 1e-12;
         assert_ne!(cache.path(&case, &bent), path);
+        let [none, narrow, wide] = [0.0, 0.01, 0.02].map(|angle| cache.soft_path(&case, &scene, angle));
+        assert!(none == path && narrow != path && wide != path && wide != narrow);
+        // Lights without size keep their files, whatever was learnt about others.
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert_eq!(name, "240755bbc33b5d70def18d7eeb095427a19d8d4063cd797657e0d0285dddb0b5.truth");
     }
 
     #[test]
