@@ -11,4 +11,5 @@ pub mod read;
 pub mod split;
 pub mod spread;
 pub(crate) mod stage;
+pub mod summed;
 pub mod variance;
