@@ -10,17 +10,16 @@ struct AntumbraEdges {
 }
 
 // Of a box in a tile of so many texels. Towards the rim it narrows: what is not drawn is not known.
-fn antumbra_edges(place: f32, radius: f32, side: i32) -> AntumbraEdges {
-    let end = f32(side);
-    let at = min(max(place, 0.5), end - 0.5);
-    let room = min(at, end - at) - 1.5;
+fn antumbra_edges(place: f32, radius: f32, side: f32) -> AntumbraEdges {
+    let at = min(max(place, 0.5), side - 0.5);
+    let room = min(at, side - at) - 1.5;
     let half_width = max(min(radius, room), 0.5);
     let low = at - half_width;
     let high = at + half_width;
     let first = floor(low);
     let last = max(floor(high), first + 1.0);
     let weights = vec3f(first + 1.0 - low, 1.0, max(high - last, 0.0));
-    let nodes = vec4i(i32(first), i32(first) + 1, i32(last), min(i32(last) + 1, side));
+    let nodes = vec4i(vec4f(first, first + 1.0, last, min(last + 1.0, side)));
     return AntumbraEdges(nodes, weights, weights.x + (last - first - 1.0) + weights.z);
 }
 
@@ -51,7 +50,7 @@ fn antumbra_stored_at(map: texture_2d<u32>, linear: sampler, look: AntumbraLooku
     let size = vec2f(textureDimensions(map));
     let first = floor(look.low * size);
     let corner = vec2i(first);
-    let side = vec2i(floor(look.high * size) - first) + 1;
+    let side = floor(look.high * size) - first + 1.0;
     let place = look.uv * size - first;
     let u = antumbra_edges(place.x, look.radius.x, side.x);
     let v = antumbra_edges(place.y, look.radius.y, side.y);

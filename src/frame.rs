@@ -413,8 +413,9 @@ pub struct ViewUniforms {
     /// Maps of moments with mips: texels of the map over a pixel at a render-space position, where w is 1: a row.
     pub pixel_from_render: [f32; 4],
     /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z: how far
-    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: 0. Maps of depths
-    /// with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth
+    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: half-width of the
+    /// blur, world units where it is not negative, else texels, negated; only sums
+    /// ([`Summed`](crate::MomentFormat::Summed)) are read as wide. Maps of depths with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth
     /// between caster and receiver. y: radius of the widest penumbra, texels. z, w: 0.
     pub moments: [f32; 4],
 }

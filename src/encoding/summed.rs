@@ -75,10 +75,9 @@ struct Edges {
 
 /// Twin of `antumbra_edges`: of a box in a tile of `side` texels; towards the rim, beyond which nothing is drawn, it
 /// narrows.
-fn antumbra_edges(place: f32, radius: f32, side: i32) -> Edges {
-    let end = side as f32;
-    let at = place.max(0.5).min(end - 0.5);
-    let room = at.min(end - at) - 1.5;
+fn antumbra_edges(place: f32, radius: f32, side: f32) -> Edges {
+    let at = place.max(0.5).min(side - 0.5);
+    let room = at.min(side - at) - 1.5;
     let half = radius.min(room).max(0.5);
     let low = at - half;
     let high = at + half;
@@ -86,7 +85,7 @@ fn antumbra_edges(place: f32, radius: f32, side: i32) -> Edges {
     let last = high.floor().max(first + 1.0);
     let weights = Vec3::new(first + 1.0 - low, 1.0, (high - last).max(0.0));
     Edges {
-        nodes: [first as i32, first as i32 + 1, last as i32, (last as i32 + 1).min(side)],
+        nodes: [first, first + 1.0, last, (last + 1.0).min(side)].map(|node| node as i32),
         weights,
         whole: weights.x + (last - first - 1.0) + weights.z,
     }
@@ -100,7 +99,7 @@ pub fn antumbra_summed(map: &impl CompareMap, view: &ViewUniforms, uv: Vec2, rad
     let (half, size) = (0.5 * view.bias[3], map.size().as_vec2());
     let (low, high) = (Vec2::new(left, top) - half, Vec2::new(right, bottom) + half);
     let corner = (low * size).floor();
-    let side = ((high * size).floor() - corner).as_ivec2() + 1;
+    let side = (high * size).floor() - corner + 1.0;
     let place = uv * size - corner;
     let (u, v) = (antumbra_edges(place.x, radius.x, side.x), antumbra_edges(place.y, radius.y, side.y));
     let rows = v.nodes.map(|y| antumbra_sums_of_row(map, corner.as_ivec2(), u.nodes, y));
@@ -121,5 +120,5 @@ fn antumbra_sums_of_row(map: &impl CompareMap, corner: IVec2, columns: [i32; 4],
 
 /// Twin of `antumbra_sum_before`: the sum of all texels of the tile before a place.
 fn antumbra_sum_before(map: &impl CompareMap, corner: IVec2, node: IVec2) -> UVec4 {
-    if node.min_element() > 0 { map.sum(corner.wrapping_add(node) - 1) } else { UVec4::ZERO }
+    if node.min_element() > 0 { map.sum(corner.wrapping_add(node).wrapping_sub(IVec2::ONE)) } else { UVec4::ZERO }
 }

@@ -11,6 +11,7 @@ mod left_out;
 mod passes;
 mod poison;
 mod stage;
+mod summed;
 #[path = "../support/mod.rs"]
 mod support;
 mod tiles;
