@@ -3,16 +3,17 @@
 //! Two passes a view, along u and along v, each a triangle over the view's tile: nothing outside of it is read or
 //! written. Then the mip chain, four texels at a time. All of it runs on any adapter of WebGPU: render passes, loads,
 //! no storage textures.
-//!
-//! Summed-area tables take as many passes along each axis as eight has to be multiplied with itself to reach the tile's
-//! side: each adds eight sums of the one before it. They go to and fro between the map and the texture beside it.
+//! Summed-area tables have passes of their own ([`sums`]).
+
+mod sums;
 
 use core::num::NonZeroU64;
 
 use arrayvec::ArrayVec;
 
-use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowView};
+use crate::frame::{MAX_VIEWS, ShadowFrame};
 use crate::texel::{BlurUniforms, MomentFormat, Moments, SUMMED_TEXELS};
+use sums::sums;
 
 /// Features that an adapter has to have for a format, beyond what every adapter has.
 #[must_use]
@@ -244,40 +245,10 @@ impl Prefilter {
         }
     }
 
-    /// Sums one view: even passes into the texture beside the map, odd ones into the map, with which they end.
-    fn sum<'a>(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        (index, view): (usize, &ShadowView),
-        next: &mut dyn FnMut() -> Option<wgpu::RenderPassTimestampWrites<'a>>,
-    ) {
-        let Some(depths) = self.depths.get(view.layer as usize) else { return };
-        let Some((map, map_group)) = self.levels.get(view.layer as usize).and_then(|levels| levels.first()) else {
-            return;
-        };
-        let sums = sums(view.blur.tile[2]);
-        for number in 0..2 * sums {
-            let pipeline = match number {
-                0 => &self.along_u,
-                _ if number < sums => &self.further,
-                _ => &self.along_v,
-            };
-            let (target, source) =
-                if number % 2 == 0 { (&self.scratch, map_group) } else { (map, &self.scratch_group) };
-            let group = (if number == 0 { depths } else { source }, self.offset(index, number % sums));
-            Pass { pipeline, group, target, tile: view.blur.tile }.record(encoder, next());
-        }
-    }
-
     /// Where a view's uniform block is.
     fn offset(&self, view: usize, number: u32) -> u32 {
         self.stride * ((view.min(MAX_VIEWS - 1) as u32) * self.blocks + number)
     }
-}
-
-/// Passes along an axis that sum a tile of this side.
-fn sums(side: u32) -> u32 {
-    side.saturating_sub(1).checked_ilog(SUMMED_TEXELS).map_or(1, |whole| whole + 1)
 }
 
 /// The entry points that fill a map: from depths along u, along v, and what is left to do.

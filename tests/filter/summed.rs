@@ -1,5 +1,5 @@
-//! Summed-area tables: their passes are exact, wrap around without a trace, and stay in their tiles; what is read of
-//! them is the mean over the receiver's own box.
+//! Summed-area tables in memory: exact, wrapping around without a trace; what is read of them is the mean over the
+//! receiver's own box, within its tile.
 
 use antumbra::encoding::blur::antumbra_blur_radius;
 use antumbra::encoding::depth::{CompareMap, DepthMap, antumbra_visible};
@@ -8,23 +8,20 @@ use antumbra::encoding::split::OnMap;
 use antumbra::encoding::summed::{
     ANTUMBRA_BOX_MOST, ANTUMBRA_BOX_STEPS, antumbra_counted, antumbra_half_widths, antumbra_summed,
 };
-use antumbra::lab::cpu::{self, Visible};
-use antumbra::lab::gpu::{GpuScene, RenderOptions, Renderer, read_depth, read_sums};
 use antumbra::lab::moments::MomentMap;
-use antumbra::lab::subject::{Setting, Subject};
 use antumbra::{
-    DepthRange, Encoding, FitError, Light, MapBudget, MomentFormat, MomentKind, Moments, Part, Prefilter, Radius,
-    Remix, ShadowFrame, ShadowView, ViewUniforms, Why, techniques,
+    Encoding, FitError, Light, MapBudget, MomentFormat, MomentKind, Moments, Part, Prefilter, Radius, Remix,
+    ShadowFrame, ShadowView, ViewUniforms, Why, techniques,
 };
 use glam::{DVec3, UVec2, UVec4, Vec2, Vec3, Vec4};
 
 use crate::dice::Dice;
-use crate::poison::{POISON, hostile};
-use crate::stage::{SIZE, Stage, encoding, filtered, fit, tiled};
+use crate::poison::POISON;
+use crate::stage::{SIZE, encoding, filtered, fit, tiled};
 use crate::support;
 
 /// All that is summed.
-fn summed() -> impl Iterator<Item = Moments> {
+pub(crate) fn summed() -> impl Iterator<Item = Moments> {
     let all: Vec<Moments> = Moments::all().filter(|moments| moments.is_summed()).collect();
     assert_eq!(all.len(), 3);
     all.into_iter()
@@ -42,7 +39,7 @@ fn noise(moments: Moments, radius: Radius, side: u32, dice: &mut Dice) -> (Shado
 }
 
 /// What a texel of a tile adds to sums: differences of its neighbours' that are in the tile.
-fn texel(sums: &[UVec4], side: u32, view: &ShadowView, at: UVec2) -> UVec4 {
+pub(crate) fn texel(sums: &[UVec4], side: u32, view: &ShadowView, at: UVec2) -> UVec4 {
     let [left, top, ..] = view.blur.tile;
     let before = |dx: u32, dy: u32| {
         let inside = at.x >= left + dx && at.y >= top + dy;
@@ -51,7 +48,7 @@ fn texel(sums: &[UVec4], side: u32, view: &ShadowView, at: UVec2) -> UVec4 {
     before(0, 0).wrapping_sub(before(1, 0)).wrapping_sub(before(0, 1)).wrapping_add(before(1, 1))
 }
 
-fn counted(moments: Moments, depth: f32) -> UVec4 {
+pub(crate) fn counted(moments: Moments, depth: f32) -> UVec4 {
     antumbra_counted(antumbra_store(moments, depth, 0))
 }
 
@@ -110,7 +107,7 @@ fn tables_are_exact_in_integers() {
     }
 }
 
-fn places(side: u32) -> impl Iterator<Item = UVec2> {
+pub(crate) fn places(side: u32) -> impl Iterator<Item = UVec2> {
     (0..side * side).map(move |index| UVec2::new(index % side, index / side))
 }
 
@@ -123,84 +120,7 @@ fn the_widest_box_fits() {
 }
 
 /// The passes on an adapter make the table that memory makes: every texel adds what it should, to a step of rounding,
-/// and every sum is that of its texels, exactly; one map, sides that are no powers of eight among them, and tiles.
-#[test]
-fn passes_agree_with_memory() {
-    let Some(stage) = Stage::new() else { return };
-    for moments in summed() {
-        let encoding = encoding(moments, Radius::Texels(1.5), false);
-        let one = |side| (Remix { encoding, ..techniques::tsm() }, MapBudget::one(side));
-        for (remix, map) in [one(7), one(64), one(130), one(520), tiled(encoding, 128)] {
-            let frame = fit(&remix, map);
-            let maps = stage.maps(&frame);
-            stage.draw(&Renderer::new(&stage.gpu, frame.wgsl), &frame, &maps);
-            for view in &frame.views {
-                let depths = read_depth(&stage.gpu, &maps, view.layer).unwrap();
-                let sums = read_sums(&stage.gpu, &maps, view.layer).unwrap();
-                let [left, top, tile, side] = view.blur.tile;
-                for at in places(tile).map(|at| at + UVec2::new(left, top)) {
-                    let found = texel(&sums, side, view, at);
-                    let expected = counted(moments, depths[(at.y * side + at.x) as usize]);
-                    let off = found.as_i64vec4() - expected.as_i64vec4();
-                    assert!(off.abs().max_element() <= 1, "{moments:?} at {at} of {:?}: {off}", view.blur.tile);
-                }
-            }
-        }
-    }
-}
-
 /// A map of sums whose boxes end on texels' rims draws what a map that is blurred over the same box draws, in 16 bits
-/// too: of the same half-width, in texels and in the world, one map and tiles, warped and not.
-#[test]
-fn pictures_are_those_of_the_blur() {
-    let Some(stage) = Stage::new() else { return };
-    for kind in [MomentKind::Variance, MomentKind::Hamburger, MomentKind::Hausdorff] {
-        for (name, radius) in [
-            ("1.5 texels", Radius::Texels(1.5)),
-            ("8.5 texels", Radius::Texels(8.5)),
-            ("0.2 of the world", Radius::World(0.2)),
-        ] {
-            let picture = |format| {
-                let encoding = encoding(Moments::new(kind, format).read(false, false), radius, false);
-                let one = Remix { encoding, guard: false, ..techniques::tsm() };
-                let (many, map) = tiled(encoding, 512);
-                [stage.picture(&fit(&one, MapBudget::one(512))), stage.picture(&fit(&many, map))].concat()
-            };
-            let (summed, blurred) = (picture(MomentFormat::Summed), picture(MomentFormat::Float32));
-            let off = || summed.iter().zip(&blurred).map(|(a, b)| a.abs_diff(*b));
-            let mean = off().map(f64::from).sum::<f64>() / summed.len() as f64;
-            println!("{}, {name}: mean difference {mean:.3} of 255, most {:?}", kind.name(), off().max());
-            // What sixteen bits change, as for maps that are blurred in them (formats.rs).
-            assert!(mean <= 1.0, "{kind:?}, {name}: {mean}");
-            assert!(summed.iter().any(|lit| *lit < 60) && summed.contains(&255), "{kind:?}");
-        }
-    }
-}
-
-/// The picture of an adapter is the software renderer's.
-#[test]
-fn pictures_agree_with_memory() {
-    let Some(stage) = Stage::new() else { return };
-    let (camera, origin) = (support::camera(SIZE), DVec3::ZERO);
-    let (light, subject) = (Light::Directional { travel: support::travel() }, Subject::new(support::boxes()));
-    let setting = Setting { camera, light, visible: DepthRange { near: 0.0, far: 100.0 }, origin };
-    let visible = Visible::draw(&subject.model, &camera, origin);
-    for moments in summed() {
-        for radius in [Radius::Texels(0.0), Radius::Texels(3.3), Radius::World(0.3)] {
-            let encoding = encoding(moments, radius, false);
-            let one = (Remix { encoding, guard: false, ..techniques::lispsm() }, MapBudget::one(512));
-            for (remix, map) in [one, tiled(encoding, 512)] {
-                let frame = fit(&remix, map);
-                let (gpu, software) = (stage.picture(&frame), cpu::render(&subject, &visible, &frame, &setting).mask);
-                let differ = gpu.iter().zip(&software).filter(|(gpu, cpu)| gpu.abs_diff(**cpu) > 8).count();
-                println!("{}, {radius:?}: {differ} of {} pixels differ", moments.kind().name(), gpu.len());
-                // Camera edges that rasterisers put into different pixels.
-                assert!(differ * 200 < gpu.len(), "{moments:?}, {radius:?}: {differ} pixels");
-            }
-        }
-    }
-}
-
 /// Half-widths at a receiver are those of the blur at the texel that it is in; a point where u and v are places.
 #[test]
 fn half_widths_are_those_of_the_blur() {
@@ -299,44 +219,6 @@ fn neighbours_are_not_read() {
     }
 }
 
-/// On the adapter too: summing one view anew changes no texel outside of its tile, and its own to what they were.
-#[test]
-fn sums_leave_neighbours_alone() {
-    let Some(stage) = Stage::new() else { return };
-    for moments in summed() {
-        let (remix, map) = tiled(encoding(moments, Radius::Texels(1.5), false), 256);
-        let frame = fit(&remix, map);
-        let maps = stage.maps(&frame);
-        let renderer = Renderer::new(&stage.gpu, frame.wgsl);
-        stage.draw(&renderer, &frame, &maps);
-        let read = || (0..frame.map.layers).map(|layer| read_sums(&stage.gpu, &maps, layer).unwrap());
-        let before: Vec<_> = read().collect();
-        for view in frame.views.iter().filter(|view| view.blur.tile[2] < 256) {
-            let mut one = frame.clone();
-            one.views.clear();
-            one.views.push(view.clone());
-            // As if the tile began a texel later: other sums.
-            one.views[0].blur.tile[0] += 1;
-            one.views[0].blur.tile[1] += 1;
-            one.views[0].blur.tile[2] -= 1;
-            let [left, top, side, _] = one.views[0].blur.tile;
-            crate::tiles::filter(&stage, &one, &maps);
-            let mut changed = 0;
-            for (layer, (now, then)) in read().zip(&before).enumerate() {
-                for (index, (now, then)) in now.iter().zip(then).enumerate() {
-                    let [x, y] = [index as u32 % 256, index as u32 / 256];
-                    let within = (left..left + side).contains(&x) && (top..top + side).contains(&y);
-                    assert!(now == then || (within && layer as u32 == view.layer), "{moments:?}: {x}, {y} of {layer}");
-                    changed += usize::from(now != then);
-                }
-            }
-            assert!(changed > 20, "{changed}");
-            crate::tiles::filter(&stage, &frame, &maps);
-            assert!(read().eq(before.iter().cloned()), "{moments:?}: not what it was");
-        }
-    }
-}
-
 /// Depths that are none are light, and change nothing that their box does not hold: differences of sums behind them are
 /// what they were, bit by bit.
 #[test]
@@ -395,22 +277,6 @@ fn hostile_lookups_end() {
     }
     // Maps without sums have none.
     assert_eq!(DepthMap { size: UVec2::splat(32), depth: &depths }.sum(UVec2::ZERO.as_ivec2()), UVec4::ZERO);
-}
-
-/// On the adapter: casters with vertices that are none change no picture.
-#[test]
-fn hostile_casters_change_nothing() {
-    let Some(stage) = Stage::new() else { return };
-    let scene = GpuScene::upload(&stage.gpu, &hostile(), DVec3::ZERO).unwrap();
-    for moments in summed() {
-        let remix = Remix { encoding: encoding(moments, Radius::Texels(3.0), false), ..techniques::fsm() };
-        let frame = fit(&remix, MapBudget::one(256));
-        let (maps, renderer) = (stage.maps(&frame), Renderer::new(&stage.gpu, frame.wgsl));
-        let clean = stage.draw(&renderer, &frame, &maps);
-        let (camera, options) = (support::camera(SIZE), RenderOptions::default());
-        let picture = renderer.render(&stage.gpu, &scene, &camera, &frame, &maps, &options).unwrap().mask;
-        assert!(clean == picture && clean.iter().any(|lit| *lit < 40), "{moments:?}");
-    }
 }
 
 /// Bells and mips are said to be left out, and are; widths reach farther than those of other formats.
