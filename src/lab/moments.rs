@@ -160,7 +160,7 @@ impl MomentMap {
 
 impl CompareMap for MomentMap {
     fn sum(&self, texel: IVec2) -> UVec4 {
-        let at = texel.clamp(IVec2::ZERO, IVec2::splat(self.side as i32 - 1)).as_uvec2();
+        let at = texel.max(IVec2::ZERO).as_uvec2().min(self.size() - 1);
         self.sums.get(at.y as usize * self.side + at.x as usize).copied().unwrap_or_default()
     }
 

@@ -111,6 +111,31 @@ pub(crate) fn places(side: u32) -> impl Iterator<Item = UVec2> {
     (0..side * side).map(move |index| UVec2::new(index % side, index / side))
 }
 
+/// At the centre of every texel, boxes of any half-width up to the widest that is blurred are what a map of 16 bits is
+/// blurred to, the rim included, to the steps that both round to: half a one of every texel here, half a one with each
+/// of the two passes there.
+#[test]
+fn boxes_are_those_of_the_blur() {
+    const SIDE: u32 = 256;
+    let mut dice = Dice::new(47);
+    for moments in summed() {
+        let mut worst = 0.0_f32;
+        for radius in [0.0, 0.5, 0.8, 1.5, 2.3, 7.0, 20.6, 32.0] {
+            let (frame, depths) = noise(moments, Radius::Texels(radius), SIDE, &mut dice);
+            let table = filtered(moments, &frame, std::slice::from_ref(&depths)).remove(0);
+            let blurred = Moments::new(moments.kind(), MomentFormat::Unorm16);
+            let blurred = filtered(blurred, &frame, &[depths]).remove(0);
+            for at in places(SIDE) {
+                let uv = (at.as_vec2() + 0.5) / SIDE as f32;
+                let found = antumbra_summed(&table, &frame.uniforms.views[0], uv, Vec2::splat(radius));
+                worst = worst.max((found - blurred.texel(0, 0, at)).abs().max_element());
+            }
+        }
+        println!("{}: {:.3} steps apart", moments.kind().name(), worst * ANTUMBRA_BOX_STEPS);
+        assert!(worst * ANTUMBRA_BOX_STEPS < 1.5 + 0.1, "{moments:?}: {worst}");
+    }
+}
+
 /// The widest box of the largest numbers fits 32 bits, ends within texels included; one texel more to a side would not.
 #[test]
 fn the_widest_box_fits() {
@@ -128,7 +153,7 @@ fn half_widths_are_those_of_the_blur() {
     let mut worst = 0.0_f32;
     for technique in [techniques::fsm(), techniques::tsm(), techniques::lispsm()] {
         for radius in [Radius::Texels(5.5), Radius::World(0.15)] {
-            let remix = Remix { encoding: encoding(variance(), radius, false), guard: false, ..technique.clone() };
+            let remix = Remix { encoding: encoding(variance(), radius, false), guard: false, ..technique };
             let frame = fit(&remix, MapBudget::one(512));
             let (view, blur) = (&frame.uniforms.views[0], &frame.views[0].blur);
             let mut checked = 0;
@@ -259,7 +284,7 @@ fn poison_stays_in_its_box() {
 fn hostile_lookups_end() {
     let mut dice = Dice::new(46);
     let (frame, depths) = noise(variance(), Radius::Texels(4.5), 32, &mut dice);
-    let map = filtered(variance(), &frame, &[depths.clone()]).remove(0);
+    let map = filtered(variance(), &frame, std::slice::from_ref(&depths)).remove(0);
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, 0.0, -1.0, 1e-38];
     for _ in 0..20_000 {
         let any = |dice: &mut Dice| bad[dice.below(bad.len())];

@@ -58,8 +58,10 @@ fn pictures_are_those_of_the_blur() {
             let off = || summed.iter().zip(&blurred).map(|(a, b)| a.abs_diff(*b));
             let mean = off().map(f64::from).sum::<f64>() / summed.len() as f64;
             println!("{}, {name}: mean difference {mean:.3} of 255, most {:?}", kind.name(), off().max());
-            // What sixteen bits change, as for maps that are blurred in them (formats.rs).
-            assert!(mean <= 1.0, "{kind:?}, {name}: {mean}");
+            // What sixteen bits change of four moments, as for maps that are blurred in them (formats.rs); of variance
+            // less than samplers do.
+            let most = if kind == MomentKind::Variance { 0.25 } else { 1.0 };
+            assert!(mean <= most, "{kind:?}, {name}: {mean}");
             assert!(summed.iter().any(|lit| *lit < 60) && summed.contains(&255), "{kind:?}");
         }
     }
@@ -74,7 +76,7 @@ fn pictures_agree_with_memory() {
     let setting = Setting { camera, light, visible: DepthRange { near: 0.0, far: 100.0 }, origin };
     let visible = Visible::draw(&subject.model, &camera, origin);
     for moments in summed() {
-        for radius in [Radius::Texels(0.0), Radius::Texels(3.3), Radius::World(0.3)] {
+        for radius in [Radius::Texels(0.0), Radius::Texels(3.3), Radius::Texels(100.0), Radius::World(0.3)] {
             let encoding = encoding(moments, radius, false);
             let one = (Remix { encoding, guard: false, ..techniques::lispsm() }, MapBudget::one(512));
             for (remix, map) in [one, tiled(encoding, 512)] {
