@@ -2,9 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
-use crate::encoding::summed::ANTUMBRA_BOX_MOST;
-
 /// What is stored per texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Texel {
@@ -61,7 +58,7 @@ pub enum MomentFormat {
     Unorm8,
     /// 16 bits, 0 to 1, summed over all texels of the view before it in u and in v, in integers of 32 bits that wrap
     /// around: a summed-area table. Every receiver reads the mean over a box of its own width, up to
-    /// [254 texels](Moments::widest), from 16 loads; sums of that many are exact whatever the map's size is. Boxes
+    /// [254 texels](crate::Prefilter::widest), from 16 loads; sums of that many are exact whatever the map's size is. Boxes
     /// alone: no bell, no mips. Every adapter draws it.
     Summed,
 }
@@ -247,12 +244,6 @@ impl Moments {
     #[must_use]
     pub const fn is_summed(self) -> bool {
         matches!(self.format, MomentFormat::Summed)
-    }
-
-    /// Largest half-width of the blur, texels: what a texel's passes cost, or what sums hold.
-    #[must_use]
-    pub const fn widest(self) -> f32 {
-        if self.is_summed() { ANTUMBRA_BOX_MOST } else { ANTUMBRA_BLUR_MOST }
     }
 
     /// Bytes of a texel of the map that is read.

@@ -5,6 +5,8 @@
 //! - Donnelly & Lauritzen, *Variance shadow maps*, 2006: average, then compare.
 //! - Fernando, *Percentage-closer soft shadows*, 2005: search for casters, then filter as wide as their penumbras.
 
+use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
+use crate::encoding::summed::ANTUMBRA_BOX_MOST;
 use crate::error::{FitError, finite};
 use crate::frame::Pcf;
 use crate::texel::{MomentKind, Moments, Texel};
@@ -79,6 +81,13 @@ impl Prefilter {
         Self { moments, radius: Radius::Texels(1.5), bell: false, dark: 0.0 }
     }
 
+    /// Largest half-width of the blur, texels: beyond 32 passes cost more than they are worth, beyond 127 sums do not
+    /// hold a box.
+    #[must_use]
+    pub const fn widest(&self) -> f32 {
+        if self.moments.is_summed() { ANTUMBRA_BOX_MOST } else { ANTUMBRA_BLUR_MOST }
+    }
+
     /// Whether it is a bell: of sums there is none.
     pub(crate) const fn is_bell(&self) -> bool {
         self.bell && !self.moments.is_summed()
@@ -146,7 +155,7 @@ impl Encoding {
         match prefilter.radius {
             Radius::Texels(radius) => {
                 let legal = if prefilter.moments.is_summed() { "0 to 127" } else { "0 to 32" };
-                within("encoding.radius", radius, f64::from(prefilter.moments.widest()), legal)
+                within("encoding.radius", radius, f64::from(prefilter.widest()), legal)
             }
             Radius::World(radius) => within("encoding.radius", radius, LARGEST_RADIUS, "0 to 1e9"),
         }

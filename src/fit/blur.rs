@@ -56,7 +56,7 @@ impl Fitter<'_> {
             Radius::Texels(radius) => f64::from(radius),
             Radius::World(radius) => f64::from(radius) * f64::from(side) / self.extent(body).max(THINNEST),
         };
-        let radius = radius.min(f64::from(prefilter.moments.widest())) as f32;
+        let radius = radius.min(f64::from(prefilter.widest())) as f32;
         self.texels.of_side(side).blurred(antumbra_blur_reach(radius, prefilter.is_bell()).unsigned_abs())
     }
 
