@@ -15,7 +15,8 @@ struct AntumbraBlur {
     bell: u32,
     // First term of a series.
     first_term: u32,
-    padding: u32,
+    // Texels between those that a pass adds, for what is summed.
+    stride: u32,
 }
 
 // Half-width of the box in texels of u and v at a texel of the tile, whose world size differs from texel to texel of a

@@ -425,10 +425,12 @@ pub struct ViewUniforms {
     /// Filters of the pixel: size of a pixel there across the line of sight, world units.
     pub pixel_from_render: [f32; 4],
     /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z: how far
-    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: 0. Maps of depths
-    /// with penumbras ([`Pcf::Pcss`]): x: radius of the penumbra, world units, for each unit of linear light depth
-    /// between caster and receiver. y: radius of the widest penumbra, texels. z, w: 0. Filters of the pixel
-    /// ([`Pcf::Pixel`]): x, y, z: the eye, render space, w: 1; or for parallel views the direction of sight, negated, and 0.
+    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: half-width of the
+    /// blur, world units where it is not negative, else texels, negated; only sums
+    /// ([`Summed`](crate::MomentFormat::Summed)) are read as wide. Maps of depths with penumbras ([`Pcf::Pcss`]): x:
+    /// radius of the penumbra, world units, for each unit of linear light depth between caster and receiver. y: radius
+    /// of the widest penumbra, texels. z, w: 0. Filters of the pixel ([`Pcf::Pixel`]): x, y, z: the eye, render space,
+    /// w: 1; or for parallel views the direction of sight, negated, and 0.
     pub moments: [f32; 4],
 }
 

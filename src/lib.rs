@@ -114,5 +114,5 @@ pub use report::{LeftOut, Part, Why};
 pub use scene::{Aabb, DepthRange, MAX_SIDE, MapBudget, Object, Scene};
 pub use split::{DepthSplits, Scheme, Split};
 pub use technique::{FitInput, ShadowTechnique};
-pub use texel::{BlurUniforms, CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
+pub use texel::{BlurUniforms, CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, SUMMED_TEXELS, Texel};
 pub use warp::{Focus, Warp};

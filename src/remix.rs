@@ -114,7 +114,7 @@ impl ShadowTechnique for Remix {
         let tile = Tile::whole(0, input.map.side);
         let (bias, encoding) = (self.bias, self.encoding);
         let fitter = Fitter { input: &input, travel, tile, texels, bias, encoding, how, index: 0, split: 0 };
-        blur::report(frame.wgsl.texel, &mut frame);
+        blur::report(&self.encoding, &mut frame);
         match self.split {
             Split::Depth(splits) if splits.maps > 1 && self.warp != Warp::Uniform => {
                 fitter.slices(&body, &splits, &mut frame);

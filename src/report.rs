@@ -123,6 +123,8 @@ pub enum Why {
         /// Standard deviation of depths that the format makes, share of the map's depth range.
         depth: f64,
     },
+    /// Sums give means over boxes alone: there is no bell, and there are no mips.
+    SumsAreBoxes,
     /// The filter reaches no farther: casters that are farther from their receivers have penumbras as wide as this.
     PenumbraTooWide {
         /// Distance between caster and receiver up to which penumbras are as wide as they should be, world units.
@@ -215,6 +217,7 @@ impl fmt::Display for Why {
             Self::FormatLoses { depth } => {
                 write!(f, "the format loses {:.1} % of the depth range: near contacts leak", 100.0 * depth)
             }
+            Self::SumsAreBoxes => write!(f, "sums are read in boxes: no bell, no mips"),
             Self::PenumbraTooWide { apart } => {
                 write!(f, "no wider than that of casters {apart:.3} from their receivers")
             }

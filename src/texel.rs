@@ -21,6 +21,7 @@ pub struct Moments {
     pub linear: bool,
     /// Whether far texels are read from smaller copies of the map. Maps that share a layer ([`Share`](crate::Share))
     /// are read from those in which they are whole texels: all of them, where sides are powers of two of 512 or more.
+    /// [Sums](MomentFormat::Summed) have none, and the report says so.
     pub mips: bool,
 }
 
@@ -55,6 +56,11 @@ pub enum MomentFormat {
     Unorm16,
     /// 8 bits, 0 to 1: every adapter draws and interpolates it.
     Unorm8,
+    /// 16 bits, 0 to 1, summed over all texels of the view before it in u and in v, in integers of 32 bits that wrap
+    /// around: a summed-area table. Every receiver reads the mean over a box of its own width, up to
+    /// [254 texels](crate::Prefilter::widest), from 16 loads; sums of that many are exact whatever the map's size is. Boxes
+    /// alone: no bell, no mips. Every adapter draws it.
+    Summed,
 }
 
 /// What the filter has to know of a view. The layout equals `AntumbraBlur` in the shader, member by member.
@@ -78,13 +84,18 @@ pub struct BlurUniforms {
     pub bell: u32,
     /// First term of a series, for what is stored as one.
     pub first_term: u32,
-    /// Unused.
-    pub padding: u32,
+    /// Texels between those that a pass adds, for what is summed: 1, and [`SUMMED_TEXELS`] times as many with every
+    /// further pass along an axis.
+    pub stride: u32,
 }
 
 /// Terms of the series of [`MomentKind::Convolution`]: four would blur shadows over a quarter of the depth range, 16
 /// take 32 bytes a texel.
 pub const CONVOLUTION_TERMS: u32 = 8;
+
+/// Texels that a pass adds to make [sums](MomentFormat::Summed): eight make sums of 4096 in four passes. Two would take
+/// twelve, sixteen would save one and load as many again.
+pub const SUMMED_TEXELS: u32 = 8;
 
 /// Last level of a mip chain: tiles of a layer stay apart in it as long as they are 64 texels wide.
 const LAST_LEVEL: u32 = 6;
@@ -104,12 +115,12 @@ impl MomentKind {
     /// Formats that hold them, the most exact one first.
     #[must_use]
     pub const fn formats(self) -> &'static [MomentFormat] {
-        use MomentFormat::{Float16, Float32, Unorm8, Unorm16};
+        use MomentFormat::{Float16, Float32, Summed, Unorm8, Unorm16};
         match self {
-            Self::Variance => &[Float32, Unorm16, Float16],
+            Self::Variance => &[Float32, Unorm16, Float16, Summed],
             Self::Exponential | Self::ExponentialVarianceTwo | Self::ExponentialVarianceFour => &[Float32, Float16],
             Self::Convolution => &[Unorm8],
-            Self::Hamburger | Self::Hausdorff => &[Float32, Unorm16],
+            Self::Hamburger | Self::Hausdorff => &[Float32, Unorm16, Summed],
         }
     }
 
@@ -144,7 +155,7 @@ impl MomentFormat {
     #[must_use]
     pub const fn bits(self) -> u32 {
         match self {
-            Self::Float32 => 32,
+            Self::Float32 | Self::Summed => 32,
             Self::Float16 | Self::Unorm16 => 16,
             Self::Unorm8 => 8,
         }
@@ -158,7 +169,18 @@ impl MomentFormat {
             Self::Float16 => "f16",
             Self::Unorm16 => "unorm16",
             Self::Unorm8 => "unorm8",
+            Self::Summed => "summed",
         }
+    }
+
+    /// Whether numbers are packed as 16 bits keep them best.
+    pub(crate) const fn is_packed(self) -> bool {
+        matches!(self, Self::Unorm16 | Self::Summed)
+    }
+
+    /// Whether every adapter interpolates it.
+    const fn is_linear(self) -> bool {
+        !matches!(self, Self::Float32 | Self::Summed)
     }
 }
 
@@ -169,21 +191,26 @@ impl Moments {
     pub fn new(kind: MomentKind, format: MomentFormat) -> Self {
         let formats = kind.formats();
         let format = if formats.contains(&format) { format } else { formats[0] };
-        Self { kind, format, linear: format != MomentFormat::Float32, mips: false }
+        Self { kind, format, linear: format.is_linear(), mips: false }
     }
 
-    /// The same, interpolated by samplers or by the shader, with or without mips.
+    /// The same, interpolated by samplers or by the shader, with or without mips. No sampler interpolates sums.
     #[must_use]
     pub const fn read(self, linear: bool, mips: bool) -> Self {
-        Self { linear, mips, ..self }
+        Self { linear: linear && !self.is_summed(), mips, ..self }
     }
 
     /// Every kind in every format that holds it, each read in every way there is.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_kind = |kind: MomentKind| kind.formats().iter().map(move |format| Self::new(kind, *format));
         MomentKind::ALL.into_iter().flat_map(of_kind).flat_map(|moments| {
-            let linear = if moments.linear { &[true][..] } else { &[false, true] };
-            linear.iter().flat_map(move |linear| [false, true].map(|mips| Self { linear: *linear, mips, ..moments }))
+            let linear = match moments.format {
+                MomentFormat::Float32 => &[false, true][..],
+                MomentFormat::Summed => &[false],
+                _ => &[true],
+            };
+            let mips = if moments.is_summed() { &[false][..] } else { &[false, true] };
+            linear.iter().flat_map(move |linear| mips.iter().map(move |mips| moments.read(*linear, *mips)))
         })
     }
 
@@ -192,7 +219,7 @@ impl Moments {
     #[must_use]
     pub const fn last_level(self, side: u32) -> u32 {
         let levels = if side > 1 { side.ilog2() } else { 0 };
-        if !self.mips {
+        if !self.mips || self.is_summed() {
             0
         } else if levels < LAST_LEVEL {
             levels
@@ -211,6 +238,12 @@ impl Moments {
     #[must_use]
     pub const fn format(self) -> MomentFormat {
         self.format
+    }
+
+    /// Whether texels hold sums.
+    #[must_use]
+    pub const fn is_summed(self) -> bool {
+        matches!(self.format, MomentFormat::Summed)
     }
 
     /// Bytes of a texel of the map that is read.
@@ -253,6 +286,8 @@ impl Moments {
         match self.format {
             MomentFormat::Float32 => 5e-7,
             MomentFormat::Unorm16 => 4e-5,
+            // Each depth is rounded once, by half a step of 1/65535: ¼ of that of the square, and 2 · ½ of depth.
+            MomentFormat::Summed => 1.1e-5,
             MomentFormat::Float16 | MomentFormat::Unorm8 => 1e-3,
         }
     }
@@ -292,7 +327,7 @@ mod tests {
         assert_eq!(bytes(MomentKind::Variance, MomentFormat::Float32), 8);
         assert_eq!(bytes(MomentKind::Hamburger, MomentFormat::Unorm16), 8);
         assert_eq!(bytes(MomentKind::Convolution, MomentFormat::Float32), 16);
-        assert_eq!(Moments::all().count(), 40);
+        assert_eq!(Moments::all().count(), 43);
     }
 
     /// Squares of bent depths, and sums of many, stay below the largest number.

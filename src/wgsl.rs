@@ -82,6 +82,8 @@ pub fn texture(key: WgslKey) -> &'static str {
     match (key.texel, is_arrayed(key)) {
         (Texel::Depth, false) => "texture_depth_2d",
         (Texel::Depth, true) => "texture_depth_2d_array",
+        (Texel::Moments(moments), false) if moments.is_summed() => "texture_2d<u32>",
+        (Texel::Moments(moments), true) if moments.is_summed() => "texture_2d_array<u32>",
         (Texel::Moments(_), false) => "texture_2d<f32>",
         (Texel::Moments(_), true) => "texture_2d_array<f32>",
     }
@@ -103,8 +105,14 @@ pub const fn sampler(key: WgslKey) -> &'static str {
 
 /// A text with the types of a key, whichever it was written with.
 fn with_types(text: &str, key: WgslKey) -> String {
-    const TEXTURES: [&str; 4] =
-        ["texture_depth_2d_array,", "texture_depth_2d,", "texture_2d_array<f32>,", "texture_2d<f32>,"];
+    const TEXTURES: [&str; 6] = [
+        "texture_depth_2d_array,",
+        "texture_depth_2d,",
+        "texture_2d_array<f32>,",
+        "texture_2d<f32>,",
+        "texture_2d_array<u32>,",
+        "texture_2d<u32>,",
+    ];
     let typed = format!("{},", texture(key));
     let text = TEXTURES.iter().fold(text.to_owned(), |text, other| text.replace(other, &typed));
     text.replace("sampler_comparison", sampler(key))
@@ -124,8 +132,7 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
     let map = match (key.texel, is_arrayed(key)) {
         (Texel::Depth, false) => include_str!("../shaders/map_one.wgsl"),
         (Texel::Depth, true) => include_str!("../shaders/map_many.wgsl"),
-        (Texel::Moments(_), false) => include_str!("../shaders/map_one_moments.wgsl"),
-        (Texel::Moments(_), true) => include_str!("../shaders/map_many_moments.wgsl"),
+        (Texel::Moments(moments), arrayed) => moments::map(moments, arrayed),
     };
     fragments.extend(disc::map(key, map));
     let mut push = |text: &'static str| fragments.push(Cow::Borrowed(text));
@@ -194,18 +201,7 @@ fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
         })
         .collect();
     };
-    [
-        if moments.mips {
-            include_str!("../shaders/level_many.wgsl")
-        } else {
-            include_str!("../shaders/level_one.wgsl")
-        },
-        match key.shape {
-            MapShape::Affine => include_str!("../shaders/look_affine_moments.wgsl"),
-            MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective_moments.wgsl"),
-        },
-    ]
-    .into()
+    moments::look(moments, key.shape).into()
 }
 
 /// The number of maps, as the shader knows it, from 2 on.
@@ -283,6 +279,10 @@ pub fn module(key: WgslKey, bindings: Bindings) -> String {
 /// `gpu`: vertex entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_blur_along_u`
 /// (reads depths), `antumbra_blur_along_v` (reads what that wrote) and `antumbra_halve` (a level of mips from the one
 /// above). Bindings in group 0: 0 [`BlurUniforms`](crate::BlurUniforms), 1 the depths, 2 what is stored.
+///
+/// For [sums](crate::MomentFormat::Summed) the fragment entry points are `antumbra_sum_depths` (reads depths, with a
+/// stride of 1), then `antumbra_sum_along_u` with strides of 8, 64 and so on below the tile's side, then
+/// `antumbra_sum_along_v` with strides of 1, 8 and so on; each reads what the one before it wrote.
 #[must_use]
 pub fn prefilter(moments: Moments) -> String {
     moments::prefilter(moments)

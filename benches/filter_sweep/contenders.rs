@@ -19,10 +19,15 @@ pub(crate) struct Contender {
     pub(crate) taps: Option<u32>,
 }
 
-/// Moments that take part: each kind in 32 bits, and those that 16 bits hold well.
+/// Moments that take part: each kind in 32 bits, those that 16 bits hold well, and sums.
 fn kinds(gpu: &Gpu) -> Vec<Moments> {
-    use MomentFormat::{Float16, Float32, Unorm16};
-    let small = [(MomentKind::ExponentialVarianceFour, Float16), (MomentKind::Hamburger, Unorm16)];
+    use MomentFormat::{Float16, Float32, Summed, Unorm16};
+    let small = [
+        (MomentKind::ExponentialVarianceFour, Float16),
+        (MomentKind::Hamburger, Unorm16),
+        (MomentKind::Variance, Summed),
+        (MomentKind::Hamburger, Summed),
+    ];
     let all = MomentKind::ALL.into_iter().map(|kind| (kind, Float32)).chain(small);
     all.map(|(kind, format)| supported(Moments::new(kind, format), gpu.device().features())).collect()
 }

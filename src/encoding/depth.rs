@@ -8,7 +8,7 @@
 //! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987 (percentage-closer filtering).
 //! - `MATH.md` section 7.
 
-use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 pub use super::pcf::{antumbra_box_row, antumbra_filter, antumbra_tap};
 use super::read::{antumbra_filtered, antumbra_level};
@@ -33,6 +33,11 @@ pub trait CompareMap {
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
         let _ = (uv, level, pair);
         Vec4::ZERO
+    }
+    /// The sum in a texel, by its number along u and v; beyond the map it is that at its rim. Other maps have none.
+    fn sum(&self, texel: IVec2) -> UVec4 {
+        let _ = texel;
+        UVec4::ZERO
     }
 }
 

@@ -12,4 +12,5 @@ pub mod read;
 pub mod split;
 pub mod spread;
 pub(crate) mod stage;
+pub mod summed;
 pub mod variance;

@@ -16,12 +16,13 @@ use super::moments::{
     antumbra_moments, antumbra_moments_lit, antumbra_moments_lit_within, antumbra_moments_packed,
     antumbra_moments_unpacked,
 };
+use super::summed::{antumbra_half_widths, antumbra_summed};
 use super::variance::{
     antumbra_darkened, antumbra_variance_lit, antumbra_variance_moments, antumbra_variance_packed,
     antumbra_variance_unpacked,
 };
 use crate::frame::{ViewUniforms, WgslKey};
-use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments, Texel};
+use crate::texel::{CONVOLUTION_TERMS, MomentKind, Moments, Texel};
 
 /// Twin of the shader's constant: below every w in view.
 const ANTUMBRA_LEVEL_SMALLEST: f32 = 1e-6;
@@ -29,10 +30,11 @@ const ANTUMBRA_LEVEL_SMALLEST: f32 = 1e-6;
 /// Twin of `antumbra_store`: what a texel stores of a depth; for a series, of `first_term` and the next one.
 #[must_use]
 pub fn antumbra_store(moments: Moments, depth: f32, first_term: u32) -> Vec4 {
+    let packed = moments.format().is_packed();
     match moments.kind() {
         MomentKind::Variance => {
             let two = antumbra_variance_moments(depth);
-            let two = if moments.format() == MomentFormat::Unorm16 { antumbra_variance_packed(two) } else { two };
+            let two = if packed { antumbra_variance_packed(two) } else { two };
             two.extend(0.0).extend(0.0)
         }
         MomentKind::Exponential => Vec4::X * antumbra_exponential_moments(depth),
@@ -40,24 +42,17 @@ pub fn antumbra_store(moments: Moments, depth: f32, first_term: u32) -> Vec4 {
             antumbra_exponential_variance_moments(depth, moments.exponents().into())
         }
         MomentKind::Convolution => antumbra_convolution_terms(depth, first_term) * 0.5 + 0.5,
-        MomentKind::Hamburger | MomentKind::Hausdorff => match moments.format() {
-            MomentFormat::Unorm16 => antumbra_moments_packed(antumbra_moments(depth)),
-            _ => antumbra_moments(depth),
-        },
+        MomentKind::Hamburger | MomentKind::Hausdorff if packed => antumbra_moments_packed(antumbra_moments(depth)),
+        MomentKind::Hamburger | MomentKind::Hausdorff => antumbra_moments(depth),
     }
 }
 
 /// Twin of `antumbra_read`: share of the light at a depth by what is stored, 0 to 1. Not for a series.
 #[must_use]
 pub fn antumbra_read(moments: Moments, stored: Vec4, depth: f32, slope: Vec2) -> f32 {
-    let two = || match moments.format() {
-        MomentFormat::Unorm16 => antumbra_variance_unpacked(stored.xy()),
-        _ => stored.xy(),
-    };
-    let four = || match moments.format() {
-        MomentFormat::Unorm16 => antumbra_moments_unpacked(stored),
-        _ => stored,
-    };
+    let packed = moments.format().is_packed();
+    let two = || if packed { antumbra_variance_unpacked(stored.xy()) } else { stored.xy() };
+    let four = || if packed { antumbra_moments_unpacked(stored) } else { stored };
     let exponents = moments.exponents().into();
     let blur = || moments.blur() + 0.5 * slope.length();
     match moments.kind() {
@@ -102,6 +97,9 @@ pub fn antumbra_filtered(
             antumbra_convolution_part(terms, depth, term)
         };
         antumbra_convolution_lit((0..CONVOLUTION_TERMS).step_by(2).fold(0.5, |sum, term| sum + part(term)))
+    } else if moments.is_summed() {
+        let stored = antumbra_summed(map, view, look.uv, antumbra_half_widths(view, position, look.uv));
+        antumbra_read(moments, stored, depth, look.slope)
     } else {
         antumbra_read(moments, map.stored(look.uv, level, 0), depth, look.slope)
     };

@@ -8,7 +8,7 @@
 //! - Engel, *Cascaded shadow maps*, `ShaderX5`, 2006 (by depth); Valient, *Stable rendering of cascaded shadow maps*,
 //!   `ShaderX6`, 2008 (by containment: the finest map that holds the point).
 
-use glam::{UVec2, Vec2, Vec3, Vec4};
+use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4};
 
 use super::depth::{CompareMap, Lookup, antumbra_look_noisy, antumbra_visible_noisy};
 use super::read::antumbra_filtered;
@@ -53,6 +53,10 @@ impl<M: CompareMap> CompareMap for OnMap<'_, M> {
     fn stored(&self, uv: Vec2, level: f32, pair: u32) -> Vec4 {
         let rim = antumbra_rim(self.size(), level);
         self.layer.stored(uv.max(self.low + rim).min(self.high - rim), level, pair)
+    }
+
+    fn sum(&self, texel: IVec2) -> UVec4 {
+        self.layer.sum(texel)
     }
 }
 

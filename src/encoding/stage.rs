@@ -6,6 +6,7 @@
 //! - Fernando, *Percentage-closer soft shadows*, 2005: search for casters, then filter as wide as their penumbras.
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
+use crate::encoding::summed::ANTUMBRA_BOX_MOST;
 use crate::error::{FitError, finite};
 use crate::frame::{Pcf, ViewUniforms};
 use crate::texel::{MomentKind, Moments, Texel};
@@ -47,7 +48,8 @@ pub struct Prefilter {
     pub moments: Moments,
     /// Half the width of the blur.
     pub radius: Radius,
-    /// A bell of the same deviation instead of a box: smoother, 1.4 times as many texels.
+    /// A bell of the same deviation instead of a box: smoother, 1.4 times as many texels. Of
+    /// [sums](crate::MomentFormat::Summed) there are boxes alone, and the report says so.
     pub bell: bool,
     /// Light up to this share is taken for bleeding and removed, 0 (none) to 0.9. Penumbras lose their outer part with
     /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at once
@@ -59,9 +61,9 @@ pub struct Prefilter {
 /// A distance on a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radius {
-    /// Texels, 0 to 32: as wide in the picture as texels are.
+    /// Texels, 0 to 32, and of [sums](crate::MomentFormat::Summed) 0 to 127: as wide in the picture as texels are.
     Texels(f32),
-    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most 32 texels.
+    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most as many texels.
     World(f32),
 }
 
@@ -79,6 +81,18 @@ impl Prefilter {
     #[must_use]
     pub const fn of(moments: Moments) -> Self {
         Self { moments, radius: Radius::Texels(1.5), bell: false, dark: 0.0 }
+    }
+
+    /// Largest half-width of the blur, texels: beyond 32 passes cost more than they are worth, beyond 127 sums do not
+    /// hold a box.
+    #[must_use]
+    pub const fn widest(&self) -> f32 {
+        if self.moments.is_summed() { ANTUMBRA_BOX_MOST } else { ANTUMBRA_BLUR_MOST }
+    }
+
+    /// Whether it is a bell: of sums there is none.
+    pub(crate) const fn is_bell(&self) -> bool {
+        self.bell && !self.moments.is_summed()
     }
 
     /// How far receivers are lifted for the blur, as a share of its radius r, and of a texel of their mip level.
@@ -149,7 +163,10 @@ impl Encoding {
         };
         within("encoding.dark", prefilter.dark, MOST_DARK, "0 to 0.9")?;
         match prefilter.radius {
-            Radius::Texels(radius) => within("encoding.radius", radius, f64::from(ANTUMBRA_BLUR_MOST), "0 to 32"),
+            Radius::Texels(radius) => {
+                let legal = if prefilter.moments.is_summed() { "0 to 127" } else { "0 to 32" };
+                within("encoding.radius", radius, f64::from(prefilter.widest()), legal)
+            }
             Radius::World(radius) => within("encoding.radius", radius, LARGEST_RADIUS, "0 to 1e9"),
         }
     }

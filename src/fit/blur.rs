@@ -4,7 +4,7 @@
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
 use crate::content::Tile;
-use crate::encoding::blur::{ANTUMBRA_BLUR_MOST, antumbra_blur_reach};
+use crate::encoding::blur::antumbra_blur_reach;
 use crate::encoding::stage::{Encoding, Prefilter, Radius};
 use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::{Fitter, Texels};
@@ -12,7 +12,7 @@ use crate::focus::FocusBody;
 use crate::frame::{ShadowFrame, ViewUniforms};
 use crate::light_space::LightSpace;
 use crate::report::{Part, Why};
-use crate::texel::{BlurUniforms, MomentKind, Texel};
+use crate::texel::{BlurUniforms, MomentKind};
 
 /// Shortest extent across the light by which a world radius is divided, world units: what is thinner is blurred as much
 /// as can be.
@@ -56,8 +56,8 @@ impl Fitter<'_> {
             Radius::Texels(radius) => f64::from(radius),
             Radius::World(radius) => f64::from(radius) * f64::from(side) / self.extent(body).max(THINNEST),
         };
-        let radius = radius.min(f64::from(ANTUMBRA_BLUR_MOST)) as f32;
-        self.texels.of_side(side).blurred(antumbra_blur_reach(radius, prefilter.bell).unsigned_abs())
+        let radius = radius.min(f64::from(prefilter.widest())) as f32;
+        self.texels.of_side(side).blurred(antumbra_blur_reach(radius, prefilter.is_bell()).unsigned_abs())
     }
 
     /// About the shorter side of the window that will be laid around a body, world units. Of maps that stand still it
@@ -98,6 +98,7 @@ impl Fitter<'_> {
             Radius::World(radius) => f64::from(radius) / texel.min_element(),
         };
         uniforms.bias[0] += (prefilter.lifted() * widest.min(f64::from(texels.kernel()))) as f32;
+        uniforms.moments[3] = radius;
         self.write_level(prefilter, placed, uniforms, frame);
         let corner = self.tile.corner;
         BlurUniforms {
@@ -107,9 +108,9 @@ impl Fitter<'_> {
             across_w,
             inverse_w: row(place_from_texture.row(2)),
             radius,
-            bell: prefilter.bell.into(),
+            bell: prefilter.is_bell().into(),
             first_term: 0,
-            padding: 0,
+            stride: 1,
         }
     }
 
@@ -138,7 +139,7 @@ impl Fitter<'_> {
         } else if levels > 0 {
             frame.leave_out(Part::Levels(self.index), Why::TexelsAreLarger { texels });
         }
-        uniforms.moments = [prefilter.dark, read as f32, prefilter.lifted() as f32, 0.0];
+        uniforms.moments = [prefilter.dark, read as f32, prefilter.lifted() as f32, uniforms.moments[3]];
     }
 
     /// Last level in which the tile is whole texels: beyond it they are shared with other maps.
@@ -149,8 +150,11 @@ impl Fitter<'_> {
 }
 
 /// Says what a format of moments loses.
-pub(crate) fn report(texel: Texel, frame: &mut ShadowFrame) {
-    let Texel::Moments(moments) = texel else { return };
+pub(crate) fn report(encoding: &Encoding, frame: &mut ShadowFrame) {
+    let Encoding::Moments(Prefilter { moments, bell, .. }) = *encoding else { return };
+    if moments.is_summed() && (bell || moments.mips) {
+        frame.leave_out(Part::Light, Why::SumsAreBoxes);
+    }
     if moments.kind() == MomentKind::Variance && moments.variance_loss() >= MUCH_LOST {
         frame.leave_out(Part::Light, Why::FormatLoses { depth: f64::from(moments.variance_loss()).sqrt() });
     }

@@ -2,6 +2,7 @@
 
 use core::num::NonZeroU64;
 
+use super::prefilter::stored_type;
 use crate::frame::{MAX_VIEWS, ViewUniforms, WgslKey};
 use crate::texel::Texel;
 
@@ -39,7 +40,7 @@ pub fn layout_entries(key: WgslKey, first: u32, visibility: wgpu::ShaderStages) 
 fn sample_type(key: WgslKey) -> wgpu::TextureSampleType {
     match key.texel {
         Texel::Depth => wgpu::TextureSampleType::Depth,
-        Texel::Moments(moments) => wgpu::TextureSampleType::Float { filterable: moments.linear },
+        Texel::Moments(moments) => stored_type(moments),
     }
 }
 

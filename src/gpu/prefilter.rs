@@ -3,13 +3,17 @@
 //! Two passes a view, along u and along v, each a triangle over the view's tile: nothing outside of it is read or
 //! written. Then the mip chain, four texels at a time. All of it runs on any adapter of WebGPU: render passes, loads,
 //! no storage textures.
+//! Summed-area tables have passes of their own ([`sums`]).
+
+mod sums;
 
 use core::num::NonZeroU64;
 
 use arrayvec::ArrayVec;
 
 use crate::frame::{MAX_VIEWS, ShadowFrame};
-use crate::texel::{BlurUniforms, MomentFormat, Moments};
+use crate::texel::{BlurUniforms, MomentFormat, Moments, SUMMED_TEXELS};
+use sums::sums;
 
 /// Features that an adapter has to have for a format, beyond what every adapter has.
 #[must_use]
@@ -53,11 +57,22 @@ pub fn texture_format(moments: Moments) -> wgpu::TextureFormat {
         (1, _) => Format::R32Float,
         (2, MomentFormat::Float16) => Format::Rg16Float,
         (2, MomentFormat::Unorm16) => Format::Rg16Unorm,
+        (2, MomentFormat::Summed) => Format::Rg32Uint,
         (2, _) => Format::Rg32Float,
         (_, MomentFormat::Float16) => Format::Rgba16Float,
         (_, MomentFormat::Unorm16) => Format::Rgba16Unorm,
         (_, MomentFormat::Unorm8) => Format::Rgba8Unorm,
+        (_, MomentFormat::Summed) => Format::Rgba32Uint,
         (_, MomentFormat::Float32) => Format::Rgba32Float,
+    }
+}
+
+/// What shaders read of moments.
+pub(super) fn stored_type(moments: Moments) -> wgpu::TextureSampleType {
+    if moments.is_summed() {
+        wgpu::TextureSampleType::Uint
+    } else {
+        wgpu::TextureSampleType::Float { filterable: moments.linear }
     }
 }
 
@@ -68,11 +83,15 @@ pub(super) struct Prefilter {
     side: u32,
     maps: wgpu::Texture,
     view: wgpu::TextureView,
+    /// From depths, along u.
     along_u: wgpu::RenderPipeline,
     along_v: wgpu::RenderPipeline,
-    halve: wgpu::RenderPipeline,
+    /// From a level of mips to the next one; of sums, further along u.
+    further: wgpu::RenderPipeline,
     uniforms: wgpu::Buffer,
     stride: u32,
+    /// Uniform blocks of a view: one for each pair of terms of a series, or for each pass of sums along an axis.
+    blocks: u32,
     /// Depths of each layer, to be read along u.
     depths: Vec<wgpu::BindGroup>,
     /// What was averaged along u: one layer for all of them, one after the other.
@@ -81,9 +100,6 @@ pub(super) struct Prefilter {
     /// Each level of each layer, to be drawn into and, but for the last level, to be read.
     levels: Vec<Vec<(wgpu::TextureView, wgpu::BindGroup)>>,
 }
-
-/// Uniform blocks: one for each view, and for each pair of terms of a series.
-const MOST_BLOCKS: u64 = MAX_VIEWS as u64 * 4;
 
 impl Prefilter {
     pub(super) fn new(
@@ -96,7 +112,7 @@ impl Prefilter {
         let (side, layers) = (depth.width(), depth.depth_or_array_layers());
         let format = texture_format(moments);
         // Pipelines.
-        let layouts = Layouts::new(device);
+        let layouts = Layouts::new(device, moments);
         let source = wgpu::ShaderSource::Wgsl(crate::wgsl::prefilter(moments).into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
         let pipeline = |entry, layout: &wgpu::BindGroupLayout| pass_pipeline(device, &module, entry, layout, format);
@@ -108,10 +124,11 @@ impl Prefilter {
         let view = maps.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
         // Uniforms, and what each pass reads.
         let block = size_of::<BlurUniforms>() as u64;
+        let blocks = if moments.is_summed() { sums(side) } else { moments.layers() };
         let stride = (block as u32).next_multiple_of(device.limits().min_uniform_buffer_offset_alignment);
         let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
             label,
-            size: u64::from(stride) * MOST_BLOCKS,
+            size: u64::from(stride * blocks) * MAX_VIEWS as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -130,10 +147,11 @@ impl Prefilter {
             (view, group)
         };
         let of_layer = |layer| (0..level_count).map(|level| of_level(layer, level)).collect();
+        let [along_u, along_v, further] = entries(moments);
         Self {
-            along_u: pipeline("antumbra_blur_along_u", &layouts.depths),
-            along_v: pipeline("antumbra_blur_along_v", &layouts.stored),
-            halve: pipeline("antumbra_halve", &layouts.stored),
+            along_u: pipeline(along_u, &layouts.depths),
+            along_v: pipeline(along_v, &layouts.stored),
+            further: pipeline(further, &layouts.stored),
             scratch_group: group(&layouts.stored, 2, &scratch),
             levels: (0..layers * moments.layers()).map(of_layer).collect(),
             moments,
@@ -142,6 +160,7 @@ impl Prefilter {
             view,
             uniforms,
             stride,
+            blocks,
             depths,
             scratch,
         }
@@ -168,15 +187,18 @@ impl Prefilter {
     /// Uploads what the filter has to know of each view.
     pub(super) fn prepare(&self, queue: &wgpu::Queue, frame: &ShadowFrame) {
         for (index, view) in frame.views.iter().enumerate() {
-            for pair in 0..self.moments.layers() {
-                let block = BlurUniforms { first_term: 2 * pair, ..view.blur };
-                queue.write_buffer(&self.uniforms, u64::from(self.offset(index, pair)), bytemuck::bytes_of(&block));
+            for number in 0..self.blocks {
+                let block = BlurUniforms { first_term: 2 * number, stride: SUMMED_TEXELS.pow(number), ..view.blur };
+                queue.write_buffer(&self.uniforms, u64::from(self.offset(index, number)), bytemuck::bytes_of(&block));
             }
         }
     }
 
     /// Number of passes that a frame takes.
     fn passes(&self, frame: &ShadowFrame) -> usize {
+        if self.moments.is_summed() {
+            return frame.views.iter().map(|view| 2 * sums(view.blur.tile[2]) as usize).sum();
+        }
         let pairs = self.moments.layers() as usize;
         pairs * (2 * frame.views.len() + layers(frame).map(|layer| halvings(frame, layer)).sum::<usize>())
     }
@@ -193,6 +215,10 @@ impl Prefilter {
             number += 1;
             stamps(number - 1, count)
         };
+        if self.moments.is_summed() {
+            frame.views.iter().enumerate().for_each(|view| self.sum(encoder, view, &mut next));
+            return;
+        }
         let pairs = self.moments.layers();
         for (index, view) in frame.views.iter().enumerate() {
             for pair in 0..pairs {
@@ -213,14 +239,24 @@ impl Prefilter {
                 for (level, pair) in levels.windows(2).enumerate().take(halvings(frame, layer)) {
                     let side = (self.side >> (level + 1)).max(1);
                     let (group, tile) = ((&pair[0].1, 0), [0, 0, side, side]);
-                    Pass { pipeline: &self.halve, group, target: &pair[1].0, tile }.record(encoder, next());
+                    Pass { pipeline: &self.further, group, target: &pair[1].0, tile }.record(encoder, next());
                 }
             }
         }
     }
 
-    fn offset(&self, view: usize, pair: u32) -> u32 {
-        self.stride * ((view.min(MAX_VIEWS - 1) as u32) * self.moments.layers() + pair)
+    /// Where a view's uniform block is.
+    fn offset(&self, view: usize, number: u32) -> u32 {
+        self.stride * ((view.min(MAX_VIEWS - 1) as u32) * self.blocks + number)
+    }
+}
+
+/// The entry points that fill a map: from depths along u, along v, and what is left to do.
+fn entries(moments: Moments) -> [&'static str; 3] {
+    if moments.is_summed() {
+        ["antumbra_sum_depths", "antumbra_sum_along_v", "antumbra_sum_along_u"]
+    } else {
+        ["antumbra_blur_along_u", "antumbra_blur_along_v", "antumbra_halve"]
     }
 }
 
@@ -279,7 +315,7 @@ struct Layouts {
 }
 
 impl Layouts {
-    fn new(device: &wgpu::Device) -> Self {
+    fn new(device: &wgpu::Device, moments: Moments) -> Self {
         let layout = |binding, sample_type| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("antumbra filter"),
@@ -309,7 +345,7 @@ impl Layouts {
         };
         Self {
             depths: layout(1, wgpu::TextureSampleType::Depth),
-            stored: layout(2, wgpu::TextureSampleType::Float { filterable: false }),
+            stored: layout(2, stored_type(moments.read(false, false))),
         }
     }
 }

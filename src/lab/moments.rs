@@ -1,13 +1,14 @@
 //! Maps of moments in memory, filtered as the passes on a GPU do it: what the software renderer reads, and what those
 //! passes are compared with.
 
-use glam::{IVec2, UVec2, Vec2, Vec4};
+use glam::{IVec2, UVec2, UVec4, Vec2, Vec4};
 use half::f16;
 use rayon::prelude::*;
 
 use crate::encoding::blur::{Mean, antumbra_blur_radius, antumbra_blur_reach, antumbra_blur_weight};
 use crate::encoding::depth::CompareMap;
 use crate::encoding::read::antumbra_store;
+use crate::encoding::summed::{ANTUMBRA_BOX_STEPS, antumbra_counted};
 use crate::frame::ShadowView;
 use crate::texel::{BlurUniforms, MomentFormat, MomentKind, Moments};
 
@@ -18,6 +19,8 @@ pub struct MomentMap {
     side: usize,
     /// For each pair of terms of a series (one for everything else) the levels, each row by row.
     pairs: Vec<Vec<Vec<Vec4>>>,
+    /// Of sums, what is summed up to each texel of its tile: `pairs` are single texels then.
+    sums: Vec<UVec4>,
 }
 
 /// What a sampler keeps of the fraction between texels.
@@ -32,12 +35,16 @@ impl MomentMap {
             vec![Vec4::ZERO; side * side]
         });
         let levels: Vec<_> = levels.collect();
-        Self { moments, side: side as usize, pairs: vec![levels; moments.layers() as usize] }
+        let sums = vec![UVec4::ZERO; if moments.is_summed() { (side * side) as usize } else { 0 }];
+        Self { moments, side: side as usize, pairs: vec![levels; moments.layers() as usize], sums }
     }
 
     /// Filters the tile of a view from the layer of depths that it was drawn into; call [`halve`](Self::halve) when
     /// all views of the layer are filtered.
     pub fn filter(&mut self, depths: &[f32], view: &ShadowView) {
+        if self.moments.is_summed() {
+            return self.sum(depths, &view.blur);
+        }
         for pair in 0..self.pairs.len() {
             let blur = BlurUniforms { first_term: 2 * pair as u32, ..view.blur };
             self.filter_pair(depths, &blur, pair);
@@ -48,7 +55,6 @@ impl MomentMap {
         let (moments, side) = (self.moments, self.side);
         let [left, top, tile, _] = blur.tile.map(|length| length as usize);
         // Along u.
-        let sound = |depth: f32| if (0.0..=1.0).contains(&depth) { depth } else { 1.0 };
         let stored = |x: usize, y: usize| {
             let depth = sound(depths[(top + y) * side + left + x]);
             antumbra_store(moments, depth, blur.first_term)
@@ -73,6 +79,23 @@ impl MomentMap {
         for (row, texels) in along_v.chunks_exact(tile).enumerate() {
             let start = (top + row) * side + left;
             self.pairs[pair][0][start..start + tile].copy_from_slice(texels);
+        }
+    }
+
+    /// Sums of all texels of a tile up to each of them, row by row.
+    fn sum(&mut self, depths: &[f32], blur: &BlurUniforms) {
+        let [left, top, tile, _] = blur.tile.map(|length| length as usize);
+        let mut above = vec![UVec4::ZERO; tile];
+        for y in top..top + tile {
+            let mut row = UVec4::ZERO;
+            for (x, above) in (left..left + tile).zip(&mut above) {
+                let index = y * self.side + x;
+                let counted = antumbra_counted(antumbra_store(self.moments, sound(depths[index]), 0));
+                self.pairs[0][0][index] = counted.as_vec4() / ANTUMBRA_BOX_STEPS;
+                row = row.wrapping_add(counted);
+                *above = above.wrapping_add(row);
+                self.sums[index] = *above;
+            }
         }
     }
 
@@ -111,7 +134,7 @@ impl MomentMap {
         }
     }
 
-    /// What a texel of a level stores, of the `pair`th two terms of a series.
+    /// What a texel of a level stores, of the `pair`th two terms of a series; of sums, what it adds to them.
     #[must_use]
     pub fn texel(&self, pair: usize, level: usize, at: UVec2) -> Vec4 {
         self.pairs[pair][level][at.y as usize * (self.side >> level).max(1) + at.x as usize]
@@ -136,6 +159,11 @@ impl MomentMap {
 }
 
 impl CompareMap for MomentMap {
+    fn sum(&self, texel: IVec2) -> UVec4 {
+        let at = texel.max(IVec2::ZERO).as_uvec2().min(self.size() - 1);
+        self.sums.get(at.y as usize * self.side + at.x as usize).copied().unwrap_or_default()
+    }
+
     fn size(&self) -> UVec2 {
         UVec2::splat(self.side as u32)
     }
@@ -157,6 +185,11 @@ impl CompareMap for MomentMap {
     }
 }
 
+/// A depth that is one: anything else is as far as can be.
+fn sound(depth: f32) -> f32 {
+    if (0.0..=1.0).contains(&depth) { depth } else { 1.0 }
+}
+
 /// A place in a tile that stays in it.
 fn within(at: usize, offset: i32, tile: usize) -> usize {
     at.saturating_add_signed(offset as isize).min(tile - 1)
@@ -168,7 +201,7 @@ fn kept(format: MomentFormat, value: Vec4) -> Vec4 {
     match format {
         MomentFormat::Float32 => value,
         MomentFormat::Float16 => Vec4::from_array(value.to_array().map(|number| f16::from_f32(number).to_f32())),
-        MomentFormat::Unorm16 => integer(f32::from(u16::MAX)),
+        MomentFormat::Unorm16 | MomentFormat::Summed => integer(f32::from(u16::MAX)),
         MomentFormat::Unorm8 => integer(f32::from(u8::MAX)),
     }
 }

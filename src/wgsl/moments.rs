@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use arrayvec::ArrayVec;
 
+use crate::frame::MapShape;
 use crate::texel::{CONVOLUTION_TERMS, MomentFormat, MomentKind, Moments};
 
 /// Most fragments that read a map of moments.
@@ -18,6 +19,16 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
     lit(moments).into_iter().for_each(&mut push);
     push(include_str!("../../shaders/darkened.wgsl"));
     // What is stored at a place.
+    if moments.is_summed() {
+        push(if arrayed {
+            include_str!("../../shaders/summed_many.wgsl")
+        } else {
+            include_str!("../../shaders/summed_one.wgsl")
+        });
+        push(include_str!("../../shaders/summed.wgsl"));
+        push(include_str!("../../shaders/read_moments.wgsl"));
+        return fragments;
+    }
     if arrayed {
         push(include_str!("../../shaders/rim.wgsl"));
     }
@@ -38,6 +49,32 @@ pub(super) fn read(moments: Moments, arrayed: bool) -> ArrayVec<Cow<'static, str
         _ => include_str!("../../shaders/read_moments.wgsl"),
     });
     fragments
+}
+
+/// What is known of a receiver; `arrayed`: whether maps are layers of an array.
+pub(super) fn map(moments: Moments, arrayed: bool) -> &'static str {
+    match (moments.is_summed(), arrayed) {
+        (false, false) => include_str!("../../shaders/map_one_moments.wgsl"),
+        (false, true) => include_str!("../../shaders/map_many_moments.wgsl"),
+        (true, false) => include_str!("../../shaders/map_one_summed.wgsl"),
+        (true, true) => include_str!("../../shaders/map_many_summed.wgsl"),
+    }
+}
+
+/// Where a receiver is looked up, its bias applied: in which level, or how wide.
+pub(super) fn look(moments: Moments, shape: MapShape) -> [&'static str; 2] {
+    let level = match (moments.is_summed(), moments.mips) {
+        (true, _) => include_str!("../../shaders/half_widths.wgsl"),
+        (false, true) => include_str!("../../shaders/level_many.wgsl"),
+        (false, false) => include_str!("../../shaders/level_one.wgsl"),
+    };
+    let look = match (moments.is_summed(), shape) {
+        (false, MapShape::Affine) => include_str!("../../shaders/look_affine_moments.wgsl"),
+        (false, _) => include_str!("../../shaders/look_projective_moments.wgsl"),
+        (true, MapShape::Affine) => include_str!("../../shaders/look_affine_summed.wgsl"),
+        (true, _) => include_str!("../../shaders/look_projective_summed.wgsl"),
+    };
+    [level, look]
 }
 
 /// Share of the light by what is stored.
@@ -80,7 +117,7 @@ fn lit(moments: Moments) -> ArrayVec<&'static str, 5> {
 /// How two moments are unpacked and read.
 fn two(moments: Moments) -> &'static [&'static str] {
     match moments.format() {
-        MomentFormat::Unorm16 => &[
+        MomentFormat::Unorm16 | MomentFormat::Summed => &[
             include_str!("../../shaders/variance_unpacked.wgsl"),
             include_str!("../../shaders/read_variance_sixteen.wgsl"),
         ],
@@ -93,11 +130,11 @@ fn four(moments: Moments) -> &'static [&'static str] {
     const UNPACKED: &str = include_str!("../../shaders/moments_unpacked.wgsl");
     const WITHIN: &str = include_str!("../../shaders/moments_hausdorff.wgsl");
     match (moments.kind(), moments.format()) {
-        (MomentKind::Hausdorff, MomentFormat::Unorm16) => {
+        (MomentKind::Hausdorff, MomentFormat::Unorm16 | MomentFormat::Summed) => {
             &[WITHIN, UNPACKED, include_str!("../../shaders/read_hausdorff_sixteen.wgsl")]
         }
         (MomentKind::Hausdorff, _) => &[WITHIN, include_str!("../../shaders/read_hausdorff.wgsl")],
-        (_, MomentFormat::Unorm16) => &[
+        (_, MomentFormat::Unorm16 | MomentFormat::Summed) => &[
             include_str!("../../shaders/moments_lit.wgsl"),
             UNPACKED,
             include_str!("../../shaders/read_hamburger_sixteen.wgsl"),
@@ -136,7 +173,7 @@ fn stored_numbers(moments: Moments) -> String {
 /// What is stored of a depth.
 fn stored(moments: Moments) -> &'static [&'static str] {
     match (moments.kind(), moments.format()) {
-        (MomentKind::Variance, MomentFormat::Unorm16) => &[
+        (MomentKind::Variance, MomentFormat::Unorm16 | MomentFormat::Summed) => &[
             include_str!("../../shaders/variance_stored.wgsl"),
             include_str!("../../shaders/variance_packed.wgsl"),
             include_str!("../../shaders/store_variance_sixteen.wgsl"),
@@ -157,7 +194,7 @@ fn stored(moments: Moments) -> &'static [&'static str] {
         (MomentKind::Convolution, _) => {
             &[include_str!("../../shaders/convolution.wgsl"), include_str!("../../shaders/store_convolution.wgsl")]
         }
-        (MomentKind::Hamburger | MomentKind::Hausdorff, MomentFormat::Unorm16) => &[
+        (MomentKind::Hamburger | MomentKind::Hausdorff, MomentFormat::Unorm16 | MomentFormat::Summed) => &[
             include_str!("../../shaders/moments_stored.wgsl"),
             include_str!("../../shaders/moments_packed.wgsl"),
             include_str!("../../shaders/store_moments_sixteen.wgsl"),
@@ -175,10 +212,14 @@ pub(super) fn prefilter(moments: Moments) -> String {
         MomentKind::Exponential => include_str!("../../shaders/mean_exponential.wgsl"),
         _ => include_str!("../../shaders/mean.wgsl"),
     };
-    let passes = [mean, include_str!("../../shaders/prefilter.wgsl")];
+    let passes = if moments.is_summed() {
+        &[include_str!("../../shaders/prefilter_summed.wgsl")][..]
+    } else {
+        &[mean, include_str!("../../shaders/prefilter.wgsl")]
+    };
     let mut text = stored_numbers(moments);
     let blur = core::iter::once(include_str!("../../shaders/blur.wgsl"));
-    for fragment in blur.chain(stored(moments).iter().copied()).chain(passes) {
+    for fragment in blur.chain(stored(moments).iter().chain(passes).copied()) {
         text.push('\n');
         text.push_str(fragment);
     }

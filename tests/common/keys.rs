@@ -9,11 +9,12 @@ const COUNTS: [u8; 3] = [2, 4, 8];
 /// Every way to find the map.
 const WAYS: usize = Select::ALL.len() * 2;
 
-/// Maps of moments that differ in all that other fragments see of them: sampled, loaded, and in layers.
-fn different() -> [Texel; 3] {
+/// Maps of moments that differ in all that other fragments see of them: sampled, loaded, summed, and in layers.
+fn different() -> [Texel; 4] {
     [
         Moments::new(MomentKind::Variance, MomentFormat::Unorm16).read(true, true),
         Moments::new(MomentKind::Hausdorff, MomentFormat::Float32).read(false, true),
+        Moments::new(MomentKind::Hamburger, MomentFormat::Summed),
         Moments::new(MomentKind::Convolution, MomentFormat::Unorm8),
     ]
     .map(Texel::Moments)

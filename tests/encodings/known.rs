@@ -164,7 +164,9 @@ fn packed_moments_come_back() {
 /// Integers hold no less than 0 and no more than 1: what is stored of any depth is within them.
 #[test]
 fn integers_hold_what_is_stored() {
-    let integers = |moments: &Moments| matches!(moments.format(), MomentFormat::Unorm16 | MomentFormat::Unorm8);
+    let integers = |moments: &Moments| {
+        matches!(moments.format(), MomentFormat::Unorm16 | MomentFormat::Unorm8 | MomentFormat::Summed)
+    };
     for moments in Moments::all().filter(integers) {
         for step in 0..=1000 {
             let depth = step as f32 / 1000.0;

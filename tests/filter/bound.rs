@@ -47,7 +47,7 @@ fn step(format: MomentFormat, largest: f32) -> f32 {
         MomentFormat::Float32 => 0.0,
         // Formats may flush what is smaller than 2⁻¹⁴.
         MomentFormat::Float16 => (largest / 1024.0).max(1.0 / 16384.0),
-        MomentFormat::Unorm16 => 1.0 / 65535.0,
+        MomentFormat::Unorm16 | MomentFormat::Summed => 1.0 / 65535.0,
         MomentFormat::Unorm8 => 1.0 / 255.0,
     }
 }

@@ -12,6 +12,8 @@ mod left_out;
 mod passes;
 mod poison;
 mod stage;
+mod summed;
+mod summed_drawn;
 #[path = "../support/mod.rs"]
 mod support;
 mod tiles;

@@ -17,7 +17,8 @@ use crate::support;
 const SIDE: u32 = 96;
 
 /// Depths that no map should hold.
-const POISON: [f32; 7] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.4, -1.0, f32::MAX, -f32::MIN_POSITIVE];
+pub(crate) const POISON: [f32; 7] =
+    [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.4, -1.0, f32::MAX, -f32::MIN_POSITIVE];
 
 /// Blurs of every kind.
 fn blurs() -> [(Radius, bool); 4] {
@@ -117,7 +118,7 @@ fn nothing_but_poison_is_lit() {
 }
 
 /// The boxes, and triangles with vertices that are none, infinite, enormous, or all in one line.
-fn hostile() -> SceneModel {
+pub(crate) fn hostile() -> SceneModel {
     let mut model = support::boxes();
     let (start, far) = (model.triangles.len(), DVec3::splat(f64::from(f32::MAX)));
     let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);

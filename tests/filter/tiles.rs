@@ -34,7 +34,7 @@ fn apart(frame: &ShadowFrame) -> ShadowFrame {
 }
 
 /// Filters a frame whose maps are drawn.
-fn filter(stage: &Stage, frame: &ShadowFrame, maps: &ShadowMaps) {
+pub(crate) fn filter(stage: &Stage, frame: &ShadowFrame, maps: &ShadowMaps) {
     maps.prepare(stage.gpu.queue(), frame).unwrap();
     let mut encoder = stage.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     maps.filter(&mut encoder, frame, &mut |_, _| None);

@@ -6,7 +6,7 @@ use antumbra::lab::moments::MomentMap;
 use antumbra::lab::raster::{DepthMode, DepthTarget, RasterPass, rasterise};
 use antumbra::lab::scene::SceneModel;
 use antumbra::{FitInput, Remix, ShadowFrame, ShadowTechnique, Texel};
-use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
+use glam::{DVec3, IVec2, UVec2, UVec4, Vec2, Vec3, Vec4};
 
 /// A technique fitted to an input, drawn.
 pub(crate) struct Drawn {
@@ -65,6 +65,13 @@ impl CompareMap for Layer {
         match self {
             Self::Depth(..) => Vec4::ZERO,
             Self::Moments(map) => map.stored(uv, level, pair),
+        }
+    }
+
+    fn sum(&self, texel: IVec2) -> UVec4 {
+        match self {
+            Self::Depth(..) => UVec4::ZERO,
+            Self::Moments(map) => map.sum(texel),
         }
     }
 }

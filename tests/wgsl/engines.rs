@@ -97,6 +97,8 @@ fn converts_to_other_languages() {
                 "texture_depth_2d" => "sampler2DShadow",
                 "texture_depth_2d_array" => "sampler2DArrayShadow",
                 "texture_2d<f32>" => "sampler2D",
+                "texture_2d<u32>" => "usampler2D",
+                "texture_2d_array<u32>" => "usampler2DArray",
                 _ => "sampler2DArray",
             };
             assert!(text.contains("antumbra_visible(") && text.contains(sampler), "{key:?} {version:?}");

@@ -20,7 +20,7 @@ use crate::gpu::GpuError;
 
 pub use baseline::Race;
 pub use clock::{Clock, PassTimes};
-pub use readback::{read_depth, read_moments};
+pub use readback::{read_depth, read_moments, read_sums};
 pub use render::{GpuImage, RenderOptions, Renderer};
 pub use scene::GpuScene;
 

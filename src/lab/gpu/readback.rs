@@ -1,6 +1,6 @@
 //! From the GPU to memory.
 
-use glam::{UVec2, Vec4};
+use glam::{UVec2, UVec4, Vec4};
 use half::f16;
 
 use super::{Gpu, GpuFailure};
@@ -36,6 +36,27 @@ pub fn read_moments(gpu: &Gpu, maps: &ShadowMaps, layer: u32, level: u32) -> Res
     Ok(bytes.chunks_exact(texel_bytes as usize).map(|texel| numbers(moments, texel)).collect())
 }
 
+/// The sums that a layer of summed maps stores, row by row, row 0 on top; numbers that a texel has not are 0. Nothing
+/// for other maps; the last layer for those that there are not.
+///
+/// # Errors
+/// The device failed.
+pub fn read_sums(gpu: &Gpu, maps: &ShadowMaps, layer: u32) -> Result<Vec<UVec4>, GpuFailure> {
+    let Some(texture) = maps.moments_texture() else { return Ok(Vec::new()) };
+    let Texel::Moments(moments) = maps.key().texel else { return Ok(Vec::new()) };
+    if !moments.is_summed() {
+        return Ok(Vec::new());
+    }
+    let layer = layer.min(texture.depth_or_array_layers() - 1);
+    let bytes = read_layer(gpu, texture, layer, UVec2::splat(texture.width()), moments.bytes())?;
+    let whole = |texel: &[u8]| {
+        let mut numbers = [0; 4];
+        bytemuck::cast_slice_mut(&mut numbers)[..texel.len()].copy_from_slice(texel);
+        UVec4::from_array(numbers)
+    };
+    Ok(bytes.chunks_exact(moments.bytes() as usize).map(whole).collect())
+}
+
 /// The numbers of a texel.
 fn numbers(moments: Moments, texel: &[u8]) -> Vec4 {
     let size = moments.format().bits() as usize / 8;
@@ -44,6 +65,7 @@ fn numbers(moments: Moments, texel: &[u8]) -> Vec4 {
         *number = match (moments.format(), bytes) {
             (MomentFormat::Float32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
             (MomentFormat::Float16, &[a, b]) => f16::from_le_bytes([a, b]).to_f32(),
+            (MomentFormat::Summed, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]) as f32,
             (MomentFormat::Unorm16, &[a, b]) => f32::from(u16::from_le_bytes([a, b])) / f32::from(u16::MAX),
             (_, bytes) => f32::from(bytes[0]) / f32::from(u8::MAX),
         };
