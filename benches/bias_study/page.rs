@@ -1,0 +1,278 @@
+//! The page of the study, and its plots.
+
+use std::fmt::Write as _;
+
+use antumbra::lab::metrics::detachment::STRIP_PX;
+use antumbra::lab::report::{Diagram, Layer, Look, Spot, diagram_svg};
+
+use crate::gz::{self, INT_MAX, SECOND_CAMERA, Step, Swept};
+use crate::matrix::{ACNE, Cell, Map, Picture, SIDE, Way};
+
+/// The bias that the report settled on.
+const REPORT: f64 = 5e5;
+
+const HEAD: &str = "# Bias: self-shadowing and detachment, measured
+
+This page is written by the command below; every number of a measurement on it comes from that run.
+";
+
+/// What is measured, and how.
+fn measures(text: &mut String) {
+    let _ = writeln!(
+        text,
+        "
+- *Acne*: pixels in false shadow more than two pixels away from every edge of the ray-traced truth, % of the pixels that the light can
+  reach (`false_interior`). *Leak*: the same for light in true shadow (`leak_interior`). *Wrong*: more than half off the centre truth.
+- *Detachment*: where the unlit side of a caster meets its receiver in the picture, how many pixels in true shadow are lit before the
+  shadow begins, away from the caster along an axis of the picture, 0 to {STRIP_PX}; mean over all such contacts. *Detached*: contacts with at
+  least one such pixel, %. `antumbra::lab::metrics::detachment` has the definition."
+    );
+}
+
+pub(crate) fn page(meta: &[(&str, String)], sweep: &[Swept], pictures: &[Picture]) -> String {
+    let mut text = HEAD.to_owned();
+    text.push('\n');
+    for (name, value) in meta {
+        let _ = writeln!(text, "- {name}: `{value}`");
+    }
+    measures(&mut text);
+    matrix(&mut text, pictures);
+    report(&mut text, sweep);
+    text
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.3}", 100.0 * share)
+}
+
+/// The matrix of both pictures.
+fn matrix(text: &mut String, pictures: &[Picture]) {
+    let _ = writeln!(
+        text,
+        "
+## None, constant, slope-scaled, automatic
+
+After Fig. 6 of D. Scherzer, *Robust shadow maps for large environments*: one map of {SIDE} texels, hardware 2×2 filter. *Constant* and
+*slope-scaled* are `Bias::Manual` with `depth_world` (world units) or `slope_texels` alone, set by hand for each cell: the least strength,
+in steps of √2, that leaves at most {} % acne. No engine can do that, its bias has to serve every picture; these are the best that
+such a bias can be. *Automatic* is the default and has no strength. The bias is the receiver's, and taken off before the division by w:
+what a rasteriser adds to its hyperbolic depths afterwards would grow with w. *Back faces only*: casters with front faces culled, which in
+wgpu is `cull_mode: Some(Face::Front)` with counter-clockwise front faces; linear depth. It needs closed solids: the city's buildings are, its ground
+is not and casts nothing, as it should.",
+        100.0 * ACNE
+    );
+    for picture in pictures {
+        let Picture { name, warp, contacts, valid, .. } = picture;
+        let _ = writeln!(
+            text,
+            "\n| {name}: {warp} | bias | strength | acne | leak | wrong | detachment, px | detached |\n|---|---|--:|--:|--:|--:|--:|--:|"
+        );
+        for cell in &picture.cells {
+            let Cell { map, way, acne, leak, wrong, detached_px, detached, .. } = cell;
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | {} | {} | {detached_px:.2} | {:.1} |",
+                map.name(),
+                way.name(),
+                strength(cell),
+                percent(*acne),
+                percent(*leak),
+                percent(*wrong),
+                100.0 * detached
+            );
+        }
+        let _ = writeln!(text, "\n{valid} pixels count, with {contacts} contacts. {}", verdict(picture));
+    }
+    text.push_str(&between(pictures));
+}
+
+fn strength(cell: &Cell) -> String {
+    let limit = if cell.enough { "" } else { "no less than " };
+    match cell.way {
+        Way::None | Way::Automatic => "–".to_owned(),
+        Way::Constant => format!("{limit}{:.3}", cell.strength),
+        Way::SlopeScaled => format!("{limit}{:.2} texels", cell.strength),
+    }
+}
+
+/// What a picture's table says.
+fn verdict(picture: &Picture) -> String {
+    let mut text = if picture.same(Map::Projective, Map::Linear) {
+        "Without a warp both depths are one: the pictures are equal, byte by byte.".to_owned()
+    } else {
+        "Both depths differ here.".to_owned()
+    };
+    for map in Map::ALL {
+        let of = |way: Way| picture.cell(map, way);
+        let (Some(constant), Some(slope), Some(automatic)) =
+            (of(Way::Constant), of(Way::SlopeScaled), of(Way::Automatic))
+        else {
+            continue;
+        };
+        let mut ranked = [constant, slope, automatic];
+        ranked.sort_by(|a, b| a.detached_px.total_cmp(&b.detached_px));
+        let ranked = ranked.map(|cell| format!("{} ({:.2} px)", cell.way.name(), cell.detached_px));
+        let kept = if automatic.enough { "keeps" } else { "does not keep" };
+        let _ = write!(
+            text,
+            " {}, from least to most detachment: {}; the automatic bias {kept} to {} % of acne.",
+            map.name(),
+            ranked.join(", "),
+            100.0 * ACNE
+        );
+    }
+    text
+}
+
+/// How strengths carry over from one picture to the other.
+fn between(pictures: &[Picture]) -> String {
+    let [first, second] = pictures else { return String::new() };
+    let mut text = "\nStrengths by hand do not carry over:".to_owned();
+    for map in Map::ALL {
+        for way in [Way::Constant, Way::SlopeScaled] {
+            if let (Some(a), Some(b)) = (first.cell(map, way), second.cell(map, way)) {
+                let _ = write!(text, " {} × {} of {},", number(b.strength / a.strength), way.name(), map.name());
+            }
+        }
+    }
+    let _ = text.pop();
+    let _ = writeln!(text, " from the first picture to the second.");
+    text
+}
+
+fn number(ratio: f32) -> String {
+    if ratio >= 10.0 { format!("{ratio:.0}") } else { format!("{ratio:.2}") }
+}
+
+/// The report's sweep.
+fn report(text: &mut String, sweep: &[Swept]) {
+    let _ = writeln!(
+        text,
+        "
+## One constant for a teapot
+
+After S. Bu, J. Bustos, S. L. Tan, *Implementation and assessment of software-based shadow mapping techniques*: the Utah teapot (Newell's control
+points), two perspective lights, depths as whole numbers of 0 to INT_MAX, the texel that a pixel falls into, shadow where
+`z_pixel − z_map > bias`, and a bias from ½ on by factors of √10. The report settled on 5·10⁵ = {:.3e} of the range, and on 8·10⁵ = {:.3e} for
+another camera. It has neither the places of its lights nor its table, nor what its picture is made of; those are ours, with maps of {} texels a
+side, so that its constants are compared in kind, not digit by digit.
+
+![acne by bias](bias-acne.svg)
+
+![detachment by bias](bias-detachment.svg)
+",
+        REPORT / INT_MAX,
+        SECOND_CAMERA / INT_MAX,
+        gz::SIDE
+    );
+    let names: Vec<String> =
+        sweep.iter().map(|light| format!("{0}: acne | leak | detachment, px | detached", light.name)).collect();
+    let _ = writeln!(text, "| bias | of INT_MAX | {} |", names.join(" | "));
+    let _ = writeln!(text, "|--:|--:|{}", "--:|--:|--:|--:|".repeat(sweep.len()));
+    let steps = sweep.first().map_or(0, |light| light.steps.len());
+    for index in 0..steps {
+        let bias = sweep[0].steps[index].bias;
+        let cells: Vec<String> = sweep.iter().map(|light| cells(&light.steps[index])).collect();
+        let _ = writeln!(text, "| {} | {:.2e} | {} |", whole(bias), bias / INT_MAX, cells.join(" | "));
+    }
+    text.push('\n');
+    for light in sweep {
+        let _ = writeln!(text, "- {}", found(light));
+    }
+    errata(text, sweep);
+}
+
+fn whole(bias: f64) -> String {
+    if bias < 10.0 { format!("{bias:.2}") } else { format!("{bias:.0}") }
+}
+
+fn cells(step: &Step) -> String {
+    format!(
+        "{} | {} | {:.2} | {:.1}",
+        percent(step.acne),
+        percent(step.leak),
+        step.detached_px,
+        100.0 * step.detached
+    )
+}
+
+/// What a light's sweep says.
+fn found(light: &Swept) -> String {
+    let enough = light.steps.iter().find(|step| step.acne <= ACNE);
+    let at = light.steps.iter().min_by(|a, b| (a.bias - REPORT).abs().total_cmp(&(b.bias - REPORT).abs()));
+    let mut text = format!("*{}* ({} pixels, {} contacts): ", light.name, light.valid, light.contacts);
+    if let Some(step) = enough {
+        let _ = write!(
+            text,
+            "the first bias that leaves at most {} % acne is {} = {:.2e} of the range, with {:.1} % of the contacts detached by {:.2} px in the mean. ",
+            100.0 * ACNE,
+            whole(step.bias),
+            step.bias / INT_MAX,
+            100.0 * step.detached,
+            step.detached_px
+        );
+    }
+    if let Some(step) = at {
+        let _ = write!(
+            text,
+            "At the report's 5·10⁵ {} % acne are left and {:.1} % of the contacts are detached.",
+            percent(step.acne),
+            100.0 * step.detached
+        );
+    }
+    text
+}
+
+/// The report's two claims that do not hold.
+fn errata(text: &mut String, sweep: &[Swept]) {
+    let [between, darkened] = [|light: &Swept| light.between, |light: &Swept| light.darkened]
+        .map(|figure| sweep.iter().map(figure).sum::<usize>());
+    let most = |figure: fn(&Swept) -> f64| sweep.iter().map(figure).fold(0.0, f64::max);
+    let _ = writeln!(
+        text,
+        "
+The report calls its bias a low-pass filter. It is a threshold: over all biases and both lights {between} values of the masks lie between light
+and shadow, and {darkened} pixels that a bias lit were dark again under a larger one. A filter would soften edges and keep the mean; a
+threshold leaves edges as hard as they were, and moves every one of them towards light.
+
+It also found that light-space coordinates cannot be interpolated, and projected every pixel back. They can: interpolated as homogeneous
+coordinates over w and divided in each pixel, depths are at most {:.1e} of INT_MAX units from projected ones; divided at the
+vertices, as the report did it, up to {:.1e} units, which no bias of the table is large enough for without losing the shadows.",
+        most(|light| light.interpolated.homogeneous),
+        most(|light| light.interpolated.divided)
+    );
+}
+
+/// Name and text of each plot.
+pub(crate) fn plots(sweep: &[Swept]) -> Vec<(&'static str, String)> {
+    let draw = |title: &str, y_name: &str, figure: fn(&Step) -> f64| {
+        let layer = |(style, light): (usize, &Swept)| {
+            let line: Vec<[f64; 2]> = light.steps.iter().map(|step| [step.bias, figure(step)]).collect();
+            let spots = light.steps.iter().map(|step| Spot {
+                at: [step.bias, figure(step)],
+                told: format!("{}: {:.3}", whole(step.bias), figure(step)),
+                ..Spot::default()
+            });
+            let spots = spots.collect();
+            Layer { name: light.name.to_owned(), style, look: Look::Curve, lines: vec![line], spots }
+        };
+        let rule = |at: f64| vec![[at, 1e-9], [at, 1e9]];
+        let rules = Layer {
+            name: "the report's 5·10⁵ and 8·10⁵".to_owned(),
+            look: Look::Rule,
+            lines: vec![rule(REPORT), rule(SECOND_CAMERA)],
+            ..Layer::default()
+        };
+        diagram_svg(&Diagram {
+            title: title.to_owned(),
+            x_name: "bias, units of depth; the range is INT_MAX of them".to_owned(),
+            y_name: y_name.to_owned(),
+            x_ticks: Vec::new(),
+            layers: std::iter::once(rules).chain(sweep.iter().enumerate().map(layer)).collect(),
+        })
+    };
+    vec![
+        ("bias-acne.svg", draw("Teapot: acne under one constant bias", "acne, %", |step| 100.0 * step.acne)),
+        ("bias-detachment.svg", draw("Teapot: detachment under one constant bias", "detachment, px", |step| step.detached_px)),
+    ]
+}
