@@ -125,8 +125,7 @@ impl Light {
         let right = forward.cross(DVec3::Y).normalize();
         let row = |axis: DVec3, scale: f64| (axis * scale).extend(-axis.dot(self.position) * scale);
         let depth = row(forward, 1.0);
-        let rows =
-            [row(right, NEAR), row(right.cross(forward), NEAR), depth - DVec4::new(0.0, 0.0, 0.0, NEAR), depth];
+        let rows = [row(right, NEAR), row(right.cross(forward), NEAR), depth - DVec4::new(0.0, 0.0, 0.0, NEAR), depth];
         DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
     }
 
@@ -152,8 +151,7 @@ impl Light {
             let lit = |margin: &Option<i64>| margin.is_none_or(|margin| margin as f64 <= bias);
             let mask: Vec<u8> = margins.iter().map(|margin| if lit(margin) { u8::MAX } else { 0 }).collect();
             let valid = |pixel: &usize| truth.valid[*pixel];
-            swept.between +=
-                (0..mask.len()).filter(valid).filter(|at| mask[*at] != 0 && mask[*at] != u8::MAX).count();
+            swept.between += (0..mask.len()).filter(valid).filter(|at| mask[*at] != 0 && mask[*at] != u8::MAX).count();
             if let Some(before) = &before {
                 swept.darkened += (0..mask.len()).filter(valid).filter(|at| mask[*at] < before[*at]).count();
             }
@@ -210,8 +208,9 @@ fn interpolated(model: &SceneModel, visible: &Visible, setting: &Setting, clip: 
     let picture = antumbra::lab::projection::clip_from_render(&setting.camera, setting.origin);
     let mut most = Interpolated::default();
     for hit in visible.iter() {
-        let corners = model.corners(hit.triangle as usize);
-        let seen = corners.map(|corner| picture * (corner - setting.origin).extend(1.0));
+        // As the rasteriser has them.
+        let corners = model.corners(hit.triangle as usize).map(|corner| (corner - setting.origin).as_vec3().as_dvec3());
+        let seen = corners.map(|corner| picture * corner.extend(1.0));
         let here = picture * hit.position.extend(1.0);
         let [a, b, c] = seen.map(|corner| corner.truncate().truncate() / corner.w);
         let at = here.truncate().truncate() / here.w;
@@ -221,7 +220,7 @@ fn interpolated(model: &SceneModel, visible: &Visible, setting: &Setting, clip: 
         if area.abs() < 1e-7 || seen.iter().any(|corner| corner.w <= 0.0) {
             continue;
         }
-        let light = corners.map(|corner| *clip * corner.extend(1.0));
+        let light = corners.map(|corner| *clip * (corner + setting.origin).extend(1.0));
         let over_w: DVec4 = (0..3).map(|i| light[i] * (linear[i] / area / seen[i].w)).sum();
         let divided: f64 = (0..3).map(|i| light[i].z / light[i].w * linear[i] / area).sum();
         let exact = *clip * (hit.position + setting.origin).extend(1.0);

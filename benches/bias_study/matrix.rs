@@ -79,11 +79,21 @@ impl Way {
     }
 }
 
+/// How much acne a strength may leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Goal {
+    /// [`ACNE`].
+    Unseen,
+    /// No more than the automatic bias leaves in the same map.
+    AsAutomatic,
+}
+
 /// One cell of the matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
     pub(crate) map: Map,
     pub(crate) way: Way,
+    pub(crate) goal: Goal,
     /// World units or texels, for ways that have one.
     pub(crate) strength: f32,
     /// False, where no strength left little enough acne; that of the largest one is shown.
@@ -101,20 +111,20 @@ pub(crate) struct Cell {
 pub(crate) struct Picture {
     pub(crate) name: String,
     pub(crate) warp: &'static str,
-    pub(crate) bent: bool,
     pub(crate) contacts: usize,
     pub(crate) valid: usize,
     pub(crate) cells: Vec<Cell>,
 }
 
 impl Picture {
-    pub(crate) fn cell(&self, map: Map, way: Way) -> Option<&Cell> {
-        self.cells.iter().find(|cell| cell.map == map && cell.way == way)
+    pub(crate) fn cell(&self, map: Map, way: Way, goal: Goal) -> Option<&Cell> {
+        self.cells.iter().find(|cell| (cell.map, cell.way, cell.goal) == (map, way, goal))
     }
 
     /// Whether two kinds of map gave the same pictures.
     pub(crate) fn same(&self, a: Map, b: Map) -> bool {
-        Way::ALL.iter().all(|way| self.cell(a, *way).map(|cell| &cell.mask) == self.cell(b, *way).map(|cell| &cell.mask))
+        let masks = |map: Map| self.cells.iter().filter(move |cell| cell.map == map).map(|cell| &cell.mask);
+        masks(a).eq(masks(b))
     }
 }
 
@@ -133,10 +143,13 @@ struct Studio<'a> {
 pub(crate) fn pictures() -> Result<Vec<Picture>, String> {
     let city = Assignment::of_scene("sparse-city")?;
     let case = |name: &str| city.cases.iter().find(|case| case.name == name).ok_or(format!("no case {name}"));
-    let figure = picture(&city.subject, case("figure")?, "focused, no warp", Warp::Focused)?;
-    let across =
-        picture(&city.subject, case("across")?, "light-space perspective, unguarded", Warp::LightSpacePerspective)?;
-    Ok(vec![figure, across])
+    let (figure, across) = (case("figure")?, case("across")?);
+    let strongest = Warp::Perspective { pull_back: 0.0 };
+    Ok(vec![
+        picture(&city.subject, figure, "focused, no warp", Warp::Focused)?,
+        picture(&city.subject, across, "light-space perspective, unguarded", Warp::LightSpacePerspective)?,
+        picture(&city.subject, across, "perspective shadow map, unguarded", strongest)?,
+    ])
 }
 
 fn picture(subject: &Subject, case: &Case, called: &'static str, warp: Warp) -> Result<Picture, String> {
@@ -148,34 +161,42 @@ fn picture(subject: &Subject, case: &Case, called: &'static str, warp: Warp) -> 
     let studio = Studio { subject, backs, setting, visible, truth, found, warp };
     let mut cells = Vec::new();
     for map in Map::ALL {
+        let automatic = studio.draw(map, Way::Automatic, 0.0)?.acne;
         for way in Way::ALL {
-            let cell = studio.tuned(map, way)?;
-            let Cell { strength, acne, leak, detached_px, .. } = cell;
-            println!("{}, {map:?}, {way:?} {strength}: acne {acne}, leak {leak}, {detached_px} px", case.name);
-            crate::save(&format!("{} {} {}", case.name, map.name(), way.name()), &cell.mask, &studio.truth)?;
-            cells.push(cell);
+            let goals: &[_] =
+                if way.strengths().len() > 1 { &[Goal::Unseen, Goal::AsAutomatic] } else { &[Goal::Unseen] };
+            for goal in goals {
+                let most = if *goal == Goal::Unseen { ACNE } else { automatic };
+                let cell = Cell { goal: *goal, ..studio.tuned(map, way, most)? };
+                let Cell { strength, acne, leak, detached_px, .. } = cell;
+                println!(
+                    "{}, {called}, {map:?}, {way:?} {goal:?} {strength}: acne {acne}, leak {leak}, {detached_px} px",
+                    case.name
+                );
+                let file = format!("{} {called} {} {} {goal:?}", case.name, map.name(), way.name());
+                crate::save(&file, &cell.mask, &studio.truth)?;
+                cells.push(cell);
+            }
         }
     }
     let (contacts, valid) = (studio.found.len(), studio.truth.valid_count());
-    let (name, bent) = (format!("sparse-city/{}", case.name), warp != Warp::Focused);
-    Ok(Picture { name, warp: called, bent, contacts, valid, cells })
+    Ok(Picture { name: format!("sparse-city/{}", case.name), warp: called, contacts, valid, cells })
 }
 
 impl Studio<'_> {
-    /// The least strength that leaves little enough acne, or the largest one.
-    fn tuned(&self, map: Map, way: Way) -> Result<Cell, String> {
+    /// The least strength that leaves at most so much acne, or the largest one.
+    fn tuned(&self, map: Map, way: Way, most: f64) -> Result<Cell, String> {
         let strengths = way.strengths();
         let (mut low, mut high) = (0, strengths.len() - 1);
         let mut best = self.draw(map, way, strengths[high])?;
-        if best.enough {
-            while low < high {
-                let middle = usize::midpoint(low, high);
-                let cell = self.draw(map, way, strengths[middle])?;
-                if cell.enough {
-                    (high, best) = (middle, cell);
-                } else {
-                    low = middle + 1;
-                }
+        best.enough = best.acne <= most;
+        while best.enough && low < high {
+            let middle = usize::midpoint(low, high);
+            let cell = self.draw(map, way, strengths[middle])?;
+            if cell.acne <= most {
+                (high, best) = (middle, Cell { enough: true, ..cell });
+            } else {
+                low = middle + 1;
             }
         }
         Ok(best)
@@ -194,8 +215,9 @@ impl Studio<'_> {
         Ok(Cell {
             map,
             way,
+            goal: Goal::Unseen,
             strength,
-            enough: scores.false_interior <= ACNE,
+            enough: false,
             acne: scores.false_interior,
             leak: scores.leak_interior,
             wrong: scores.wrong_center,

@@ -6,7 +6,7 @@ use antumbra::lab::metrics::detachment::STRIP_PX;
 use antumbra::lab::report::{Diagram, Layer, Look, Spot, diagram_svg};
 
 use crate::gz::{self, INT_MAX, SECOND_CAMERA, Step, Swept};
-use crate::matrix::{ACNE, Cell, Map, Picture, SIDE, Way};
+use crate::matrix::{ACNE, Cell, Goal, Map, Picture, SIDE, Way};
 
 /// The bias that the report settled on.
 const REPORT: f64 = 5e5;
@@ -53,12 +53,14 @@ fn matrix(text: &mut String, pictures: &[Picture]) {
 ## None, constant, slope-scaled, automatic
 
 After Fig. 6 of D. Scherzer, *Robust shadow maps for large environments*: one map of {SIDE} texels, hardware 2×2 filter. *Constant* and
-*slope-scaled* are `Bias::Manual` with `depth_world` (world units) or `slope_texels` alone, set by hand for each cell: the least strength,
-in steps of √2, that leaves at most {} % acne. No engine can do that, its bias has to serve every picture; these are the best that
-such a bias can be. *Automatic* is the default and has no strength. The bias is the receiver's, and taken off before the division by w:
-what a rasteriser adds to its hyperbolic depths afterwards would grow with w. *Back faces only*: casters with front faces culled, which in
-wgpu is `cull_mode: Some(Face::Front)` with counter-clockwise front faces; linear depth. It needs closed solids: the city's buildings are, its ground
-is not and casts nothing, as it should.",
+*slope-scaled* are `Bias::Manual` with `depth_world` (world units) or `slope_texels` alone, set by hand for each map and each picture: the
+least strength, in steps of √2, that leaves at most {} % acne, and the least that leaves no more than the automatic bias does (*as
+automatic*). No engine can do that, its bias has to serve every picture; these are the best that such a bias can be. *Automatic* is the
+default and has no strength. The bias is the receiver's, and taken off before the division by w: a constant that a rasteriser adds to
+its hyperbolic depths afterwards grows with w, and was not measured. *Back faces only*: casters with front faces culled, in wgpu
+`cull_mode: Some(Face::Front)` and the default counter-clockwise front faces; linear depth. It needs closed solids. The city's buildings
+are; its ground is not, and casts nothing; pavements are thin slabs, whose lower sides shade their upper ones where depth changes
+by more than their thickness from texel to texel.",
         100.0 * ACNE
     );
     for picture in pictures {
@@ -73,7 +75,7 @@ is not and casts nothing, as it should.",
                 text,
                 "| {} | {} | {} | {} | {} | {} | {detached_px:.2} | {:.1} |",
                 map.name(),
-                way.name(),
+                called(cell),
                 strength(cell),
                 percent(*acne),
                 percent(*leak),
@@ -84,6 +86,11 @@ is not and casts nothing, as it should.",
         let _ = writeln!(text, "\n{valid} pixels count, with {contacts} contacts. {}", verdict(picture));
     }
     text.push_str(&between(pictures));
+}
+
+fn called(cell: &Cell) -> String {
+    let goal = if cell.goal == Goal::AsAutomatic { ", as automatic" } else { "" };
+    format!("{}{goal}", cell.way.name())
 }
 
 fn strength(cell: &Cell) -> String {
@@ -103,22 +110,24 @@ fn verdict(picture: &Picture) -> String {
         "Both depths differ here.".to_owned()
     };
     for map in Map::ALL {
-        let of = |way: Way| picture.cell(map, way);
-        let (Some(constant), Some(slope), Some(automatic)) =
-            (of(Way::Constant), of(Way::SlopeScaled), of(Way::Automatic))
-        else {
+        let of = |way, goal| picture.cell(map, way, goal);
+        let (Some(none), Some(automatic)) = (of(Way::None, Goal::Unseen), of(Way::Automatic, Goal::Unseen)) else {
             continue;
         };
-        let mut ranked = [constant, slope, automatic];
+        let rivals = [Way::Constant, Way::SlopeScaled].into_iter().filter_map(|way| of(way, Goal::AsAutomatic));
+        let mut ranked: Vec<&Cell> = rivals.chain([automatic]).collect();
         ranked.sort_by(|a, b| a.detached_px.total_cmp(&b.detached_px));
-        let ranked = ranked.map(|cell| format!("{} ({:.2} px)", cell.way.name(), cell.detached_px));
-        let kept = if automatic.enough { "keeps" } else { "does not keep" };
+        let ranked = ranked.iter().map(|cell| match cell.enough || cell.way == Way::Automatic {
+            true => format!("{} {:.2} px", cell.way.name(), cell.detached_px),
+            false => format!("{} at no strength", cell.way.name()),
+        });
         let _ = write!(
             text,
-            " {}, from least to most detachment: {}; the automatic bias {kept} to {} % of acne.",
+            " With *{}* the automatic bias takes acne from {} to {} %; at no more acne than that, from the least detachment: {}.",
             map.name(),
-            ranked.join(", "),
-            100.0 * ACNE
+            percent(none.acne),
+            percent(automatic.acne),
+            ranked.collect::<Vec<_>>().join(", ")
         );
     }
     text
@@ -126,17 +135,18 @@ fn verdict(picture: &Picture) -> String {
 
 /// How strengths carry over from one picture to the other.
 fn between(pictures: &[Picture]) -> String {
-    let [first, second] = pictures else { return String::new() };
-    let mut text = "\nStrengths by hand do not carry over:".to_owned();
+    let [first, second, ..] = pictures else { return String::new() };
+    let mut text = "\nStrengths by hand do not carry over. For the same share of acne the second picture wants, of the first one's,".to_owned();
     for map in Map::ALL {
         for way in [Way::Constant, Way::SlopeScaled] {
-            if let (Some(a), Some(b)) = (first.cell(map, way), second.cell(map, way)) {
-                let _ = write!(text, " {} × {} of {},", number(b.strength / a.strength), way.name(), map.name());
+            if let (Some(a), Some(b)) = (first.cell(map, way, Goal::Unseen), second.cell(map, way, Goal::Unseen)) {
+                let _ =
+                    write!(text, " {} times the {} with {},", number(b.strength / a.strength), way.name(), map.name());
             }
         }
     }
     let _ = text.pop();
-    let _ = writeln!(text, " from the first picture to the second.");
+    text.push_str(".\n");
     text
 }
 
@@ -187,13 +197,7 @@ fn whole(bias: f64) -> String {
 }
 
 fn cells(step: &Step) -> String {
-    format!(
-        "{} | {} | {:.2} | {:.1}",
-        percent(step.acne),
-        percent(step.leak),
-        step.detached_px,
-        100.0 * step.detached
-    )
+    format!("{} | {} | {:.2} | {:.1}", percent(step.acne), percent(step.leak), step.detached_px, 100.0 * step.detached)
 }
 
 /// What a light's sweep says.
@@ -237,7 +241,7 @@ threshold leaves edges as hard as they were, and moves every one of them towards
 
 It also found that light-space coordinates cannot be interpolated, and projected every pixel back. They can: interpolated as homogeneous
 coordinates over w and divided in each pixel, depths are at most {:.1e} of INT_MAX units from projected ones; divided at the
-vertices, as the report did it, up to {:.1e} units, which no bias of the table is large enough for without losing the shadows.",
+vertices, as the report did it, up to {:.1e} units: compare with the biases of the table.",
         most(|light| light.interpolated.homogeneous),
         most(|light| light.interpolated.divided)
     );
@@ -273,6 +277,9 @@ pub(crate) fn plots(sweep: &[Swept]) -> Vec<(&'static str, String)> {
     };
     vec![
         ("bias-acne.svg", draw("Teapot: acne under one constant bias", "acne, %", |step| 100.0 * step.acne)),
-        ("bias-detachment.svg", draw("Teapot: detachment under one constant bias", "detachment, px", |step| step.detached_px)),
+        (
+            "bias-detachment.svg",
+            draw("Teapot: detachment under one constant bias", "detachment, px", |step| step.detached_px),
+        ),
     ]
 }

@@ -156,14 +156,9 @@ impl Bias {
     /// What the shader is given; `lost` texels of reach go to rounding.
     fn knobs(self, input: &BiasInput, lost: f64) -> Knobs {
         match self {
-            Self::Automatic => Knobs {
-                plane: 1.0,
-                reach: lost,
-                grazing: GRAZING_COSINE,
-                growing: 1.0,
-                constant: 0.0,
-                offset: 0.0,
-            },
+            Self::Automatic => {
+                Knobs { plane: 1.0, reach: lost, grazing: GRAZING_COSINE, growing: 1.0, constant: 0.0, offset: 0.0 }
+            }
             // The shader adds the reach of its filter to that of the uniforms: what is left is the slope's.
             Self::Manual { depth_world, slope_texels, normal_texels } => Knobs {
                 plane: if slope_texels > 0.0 { 1.0 } else { 0.0 },

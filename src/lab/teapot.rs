@@ -75,11 +75,10 @@ pub fn teapot(steps: u32) -> SceneModel {
             add(&mut mesh, &turned(profile, quarter), steps, false);
         }
     }
-    // The first cross-section of the handle lies above its others, that of the spout below: one of them runs backwards.
-    for (sections, backwards) in [(HANDLE, true), (SPOUT, false)] {
+    for sections in [HANDLE, SPOUT] {
         for part in [0, 3] {
             for side in [1.0, -1.0] {
-                add(&mut mesh, &bent(&sections, part, side), steps, (side < 0.0) != backwards);
+                add(&mut mesh, &bent(&sections, part, side), steps, side > 0.0);
             }
         }
     }
