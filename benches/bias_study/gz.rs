@@ -2,8 +2,8 @@
 
 use antumbra::lab::case::{Case, CaseCamera, CaseLight};
 use antumbra::lab::cpu::Visible;
-use antumbra::lab::metrics::detachment::{contacts, detachment};
-use antumbra::lab::metrics::{Scores, mask_from_bytes};
+use antumbra::lab::metrics::detachment::{Contact, contacts, detachment};
+use antumbra::lab::metrics::{Edges, Scores, mask_from_bytes, near_edges};
 use antumbra::lab::raster::{DepthMode, DepthTarget, RasterPass, rasterise, resolve};
 use antumbra::lab::scene::SceneModel;
 use antumbra::lab::subject::{Setting, Subject};
@@ -28,6 +28,13 @@ const STEPS_TO: [i32; 2] = [12, 18];
 
 /// The bias that the report needed for another camera.
 pub(crate) const SECOND_CAMERA: f64 = 8e5;
+
+/// The bias that the report settled on.
+pub(crate) const REPORT: f64 = 5e5;
+
+/// Pixels on each side of a pixel that the low-pass filter averages: 5 × 5. One stripe of acne and more; wider ones
+/// reach across edges.
+const BOX: usize = 2;
 
 /// A perspective "camera" at a light, as the report has it. Its place and opening are ours: the report has neither.
 #[derive(Clone, Copy, Debug)]
@@ -77,10 +84,9 @@ pub(crate) struct Swept {
     pub(crate) contacts: usize,
     pub(crate) valid: usize,
     pub(crate) steps: Vec<Step>,
-    /// Values of the masks that are neither light nor shadow, over all biases.
-    pub(crate) between: usize,
-    /// Pixels that a larger bias turned from light to shadow, over all biases.
-    pub(crate) darkened: usize,
+    /// Mean light where all of it arrives, away from edges, 0 to 1: without a bias, the same after a low-pass filter over
+    /// the picture, and with the report's bias.
+    pub(crate) light: [f64; 3],
     pub(crate) interpolated: Interpolated,
 }
 
@@ -142,34 +148,27 @@ impl Light {
             contacts: found.len(),
             valid: truth.valid_count(),
             steps: Vec::new(),
-            between: 0,
-            darkened: 0,
+            light: [0.0; 3],
             interpolated: interpolated(&subject.model, &visible, &setting, &clip),
         };
-        let mut before: Option<Vec<u8>> = None;
-        for bias in biases() {
+        let threshold = |bias: f64| -> Vec<u8> {
             let lit = |margin: &Option<i64>| margin.is_none_or(|margin| margin as f64 <= bias);
-            let mask: Vec<u8> = margins.iter().map(|margin| if lit(margin) { u8::MAX } else { 0 }).collect();
-            let valid = |pixel: &usize| truth.valid[*pixel];
-            swept.between += (0..mask.len()).filter(valid).filter(|at| mask[*at] != 0 && mask[*at] != u8::MAX).count();
-            if let Some(before) = &before {
-                swept.darkened += (0..mask.len()).filter(valid).filter(|at| mask[*at] < before[*at]).count();
-            }
+            margins.iter().map(|margin| if lit(margin) { u8::MAX } else { 0 }).collect()
+        };
+        for bias in biases() {
+            let mask = threshold(bias);
             swept.steps.push(Step::of(bias, &mask, &truth, &found)?);
             crate::save(&format!("teapot {} {bias:.0}", self.name), &mask, &truth)?;
-            before = Some(mask);
         }
+        let bare = mask_from_bytes(&threshold(0.0));
+        let filtered = low_passed(&bare, truth.width as usize);
+        swept.light = [bare, filtered, mask_from_bytes(&threshold(REPORT))].map(|mask| mean_light(&mask, &truth));
         Ok(swept)
     }
 }
 
 impl Step {
-    fn of(
-        bias: f64,
-        mask: &[u8],
-        truth: &Truth,
-        found: &[antumbra::lab::metrics::detachment::Contact],
-    ) -> Result<Self, String> {
+    fn of(bias: f64, mask: &[u8], truth: &Truth, found: &[Contact]) -> Result<Self, String> {
         let mask = mask_from_bytes(mask);
         let scores = Scores::new(&mask, truth).map_err(|error| error.to_string())?;
         let strips = detachment(&mask, truth, found).map_err(|error| error.to_string())?;
@@ -177,6 +176,26 @@ impl Step {
         println!("{bias:e}: acne {acne}, leak {leak}, {strips:?}");
         Ok(Self { bias, acne, leak, detached_px: strips.mean_px, detached: strips.share })
     }
+}
+
+/// The mean of a box around every pixel.
+fn low_passed(mask: &[f32], width: usize) -> Vec<f32> {
+    let height = mask.len() / width;
+    let around = |at: usize, count: usize| at.saturating_sub(BOX)..(at + BOX + 1).min(count);
+    let mean = |pixel: usize| {
+        let (columns, rows) = (around(pixel % width, width), around(pixel / width, height));
+        let count = (columns.len() * rows.len()) as f32;
+        rows.flat_map(|row| columns.clone().map(move |column| mask[row * width + column])).sum::<f32>() / count
+    };
+    (0..mask.len()).map(mean).collect()
+}
+
+/// Mean light where the truth is lit, away from edges.
+fn mean_light(mask: &[f32], truth: &Truth) -> f64 {
+    let near = near_edges(truth, Edges::Area);
+    let lit = (0..mask.len()).filter(|at| truth.valid[*at] && truth.centre[*at] == 1.0 && !near[*at]);
+    let (sum, count) = lit.fold((0.0, 0.0), |(sum, count), at| (sum + f64::from(mask[at]), count + 1.0));
+    sum / f64::max(count, 1.0)
 }
 
 /// By how much each pixel is deeper than what its nearest texel holds; `None` where no texel answers.

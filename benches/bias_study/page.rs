@@ -5,11 +5,8 @@ use std::fmt::Write as _;
 use antumbra::lab::metrics::detachment::STRIP_PX;
 use antumbra::lab::report::{Diagram, Layer, Look, Spot, diagram_svg};
 
-use crate::gz::{self, INT_MAX, SECOND_CAMERA, Step, Swept};
+use crate::gz::{self, INT_MAX, REPORT, SECOND_CAMERA, Step, Swept};
 use crate::matrix::{ACNE, Cell, Goal, Map, Picture, SIDE, Way};
-
-/// The bias that the report settled on.
-const REPORT: f64 = 5e5;
 
 const HEAD: &str = "# Bias: self-shadowing and detachment, measured
 
@@ -109,7 +106,7 @@ fn verdict(picture: &Picture) -> String {
     } else {
         "Both depths differ here.".to_owned()
     };
-    for map in Map::ALL {
+    for map in distinct(picture) {
         let of = |way, goal| picture.cell(map, way, goal);
         let (Some(none), Some(automatic)) = (of(Way::None, Goal::Unseen), of(Way::Automatic, Goal::Unseen)) else {
             continue;
@@ -123,20 +120,58 @@ fn verdict(picture: &Picture) -> String {
         });
         let _ = write!(
             text,
-            " With *{}* the automatic bias takes acne from {} to {} %; at no more acne than that, from the least detachment: {}.",
+            "\n- With *{}* the automatic bias takes acne from {} to {} %; at no more acne than that, from the least detachment: {}.",
             map.name(),
             percent(none.acne),
             percent(automatic.acne),
             ranked.collect::<Vec<_>>().join(", ")
         );
     }
-    text
+    text + &rank(picture)
+}
+
+/// Kinds of map that differ.
+fn distinct(picture: &Picture) -> impl Iterator<Item = Map> {
+    let same = picture.same(Map::Projective, Map::Linear);
+    Map::ALL.into_iter().filter(move |map| !(same && *map == Map::Projective))
+}
+
+/// Where the default stands among everything that leaves little enough acne.
+fn rank(picture: &Picture) -> String {
+    let counts = |cell: &&Cell| cell.goal == Goal::Unseen && cell.acne <= ACNE;
+    let of = |map: Map| picture.cells.iter().filter(counts).filter(move |cell| cell.map == map);
+    let mut clean: Vec<&Cell> = distinct(picture).flat_map(of).collect();
+    clean.sort_by(|a, b| a.detached_px.total_cmp(&b.detached_px));
+    let default = clean.iter().position(|cell| cell.map == Map::Linear && cell.way == Way::Automatic);
+    let (Some(first), Some(default)) = (clean.first(), default) else { return String::new() };
+    format!(
+        "\n- Of the {} cells of this table with at most {} % acne (rows *as automatic* apart), the least detached is *{}, {}* with {:.2} px; the default, *linear \
+         depth, automatic*, comes {} with {:.2} px.",
+        clean.len(),
+        100.0 * ACNE,
+        first.map.name(),
+        first.way.name(),
+        first.detached_px,
+        ordinal(default + 1),
+        clean[default].detached_px
+    )
+}
+
+fn ordinal(place: usize) -> String {
+    match place {
+        1 => "first".to_owned(),
+        2 => "second".to_owned(),
+        3 => "third".to_owned(),
+        place => format!("{place}th"),
+    }
 }
 
 /// How strengths carry over from one picture to the other.
 fn between(pictures: &[Picture]) -> String {
     let [first, second, ..] = pictures else { return String::new() };
-    let mut text = "\nStrengths by hand do not carry over. For the same share of acne the second picture wants, of the first one's,".to_owned();
+    let mut text =
+        "\nHow strengths by hand carry over: for at most the same acne the second picture wants, of the first one's,"
+            .to_owned();
     for map in Map::ALL {
         for way in [Way::Constant, Way::SlopeScaled] {
             if let (Some(a), Some(b)) = (first.cell(map, way, Goal::Unseen), second.cell(map, way, Goal::Unseen)) {
@@ -229,19 +264,25 @@ fn found(light: &Swept) -> String {
 
 /// The report's two claims that do not hold.
 fn errata(text: &mut String, sweep: &[Swept]) {
-    let [between, darkened] = [|light: &Swept| light.between, |light: &Swept| light.darkened]
-        .map(|figure| sweep.iter().map(figure).sum::<usize>());
     let most = |figure: fn(&Swept) -> f64| sweep.iter().map(figure).fold(0.0, f64::max);
+    let means = sweep.iter().map(|light| {
+        let [bare, filtered, biased] = light.light.map(|mean| 100.0 * mean);
+        format!(
+            "under {} {bare:.1} % without a bias, {filtered:.1} % after the filter, {biased:.1} % with 5·10⁵",
+            light.name
+        )
+    });
     let _ = writeln!(
         text,
         "
-The report calls its bias a low-pass filter. It is a threshold: over all biases and both lights {between} values of the masks lie between light
-and shadow, and {darkened} pixels that a bias lit were dark again under a larger one. A filter would soften edges and keep the mean; a
-threshold leaves edges as hard as they were, and moves every one of them towards light.
+The report calls its bias a low-pass filter. It is a threshold. A filter spreads acne and keeps its mean: a box of 5 × 5 pixels over the
+mask without a bias leaves surfaces in full light as dark as they were, now evenly. The mean light on them, away from edges, is
+{}. A threshold puts the light back, keeps edges as hard as they were, and takes shadow away where surfaces are near to each other.
 
 It also found that light-space coordinates cannot be interpolated, and projected every pixel back. They can: interpolated as homogeneous
 coordinates over w and divided in each pixel, depths are at most {:.1e} of INT_MAX units from projected ones; divided at the
 vertices, as the report did it, up to {:.1e} units: compare with the biases of the table.",
+        means.collect::<Vec<_>>().join("; "),
         most(|light| light.interpolated.homogeneous),
         most(|light| light.interpolated.divided)
     );

@@ -38,6 +38,9 @@ use crate::math::space::{Clip, Map, Render};
 use crate::warp::window::Window;
 
 /// How a receiver is kept from shadowing itself.
+///
+/// Casters' pipelines may cull front faces as well (`cull_mode: Some(wgpu::Face::Front)`; they run counter-clockwise in a
+/// map as in the camera's picture) where all casters are closed. `docs/BIAS.md` measures all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bias {
     /// From the texel size, the reach of the filter and the precision of positions. Bounded; needs no tuning.
