@@ -67,7 +67,7 @@ by more than their thickness from texel to texel.",
             "\n| {name}: {warp} | bias | strength | acne | leak | wrong | detachment, px | detached |\n|---|---|--:|--:|--:|--:|--:|--:|"
         );
         for cell in &picture.cells {
-            let Cell { map, way, acne, leak, wrong, detached_px, detached, .. } = cell;
+            let Cell { map, acne, leak, wrong, detached_px, detached, .. } = cell;
             let _ = writeln!(
                 text,
                 "| {} | {} | {} | {} | {} | {} | {detached_px:.2} | {:.1} |",
@@ -114,9 +114,12 @@ fn verdict(picture: &Picture) -> String {
         let rivals = [Way::Constant, Way::SlopeScaled].into_iter().filter_map(|way| of(way, Goal::AsAutomatic));
         let mut ranked: Vec<&Cell> = rivals.chain([automatic]).collect();
         ranked.sort_by(|a, b| a.detached_px.total_cmp(&b.detached_px));
-        let ranked = ranked.iter().map(|cell| match cell.enough || cell.way == Way::Automatic {
-            true => format!("{} {:.2} px", cell.way.name(), cell.detached_px),
-            false => format!("{} at no strength", cell.way.name()),
+        let ranked = ranked.iter().map(|cell| {
+            if cell.enough || cell.way == Way::Automatic {
+                format!("{} {:.2} px", cell.way.name(), cell.detached_px)
+            } else {
+                format!("{} at no strength", cell.way.name())
+            }
         });
         let _ = write!(
             text,

@@ -1,7 +1,7 @@
 //! Detachment ("peter-panning"): how far from the foot of a caster its shadow begins.
 //!
-//! A *contact* is a pair of 4-neighbours: a valid pixel in true shadow, and one with geometry that is turned away from
-//! the light (or from the eye's side of it), such that
+//! A *contact* is a pair of 4-neighbours: a valid pixel in true shadow, and one with geometry whose seen side is turned
+//! away from the light, such that
 //! - the tangent planes of the two meet between the two pixel centres: what is seen there is where two surfaces touch,
 //!   not where one hides the other; and
 //! - they form a hollow: each point lies in front of the other's plane.
@@ -68,7 +68,7 @@ pub fn contacts(case: &Case, truth: &Truth) -> Vec<Contact> {
     let (width, count) = (truth.width as usize, truth.valid.len());
     let seen = rays(case, truth);
     let found = |index: usize| {
-        let right = (index + 1) % width != 0;
+        let right = !(index + 1).is_multiple_of(width);
         let below = index + width < count;
         let pairs = [
             right.then_some((index, index + 1, [Away::Left, Away::Right])),
