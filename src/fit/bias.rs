@@ -39,7 +39,7 @@ use crate::warp::window::Window;
 
 /// How a receiver is kept from shadowing itself.
 ///
-/// Casters' pipelines may cull front faces as well (`cull_mode: Some(wgpu::Face::Front)`; they run counter-clockwise in a
+/// Casters' pipelines may cull front faces as well (`cull_mode: Some(Face::Front)`; they run counter-clockwise in a
 /// map as in the camera's picture) where all casters are closed. `docs/BIAS.md` measures all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bias {
@@ -54,7 +54,7 @@ pub enum Bias {
         /// Slope-scaled: along the light, by what the receiver's plane falls over a step of this many texels along both
         /// axes of the map, 0 to 1e9. That is the polygon offset of rasterisers but for the sum of both slopes in place
         /// of the larger one, and for linear depth in warped maps as well. It grows as the tangent of incidence and is
-        /// held at a cosine of 0.01. Half of it is the reach of a point, 1 that of hardware 2×2.
+        /// held at a cosine of 0.01. A point reads up to 0.5 texels away, hardware 2×2 up to 1.
         slope_texels: f32,
         /// Distance along the surface normal, in texels (their longer side), 0 to 1e9.
         normal_texels: f32,
