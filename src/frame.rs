@@ -397,10 +397,10 @@ pub struct ViewUniforms {
     /// Linear light depth in [0, 1], less the constant bias: a row.
     pub depth_from_render: [f32; 4],
     /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each
-    /// unit of `dot(row, normal)` of those rows; 0 without automatic bias. z: square of the depth per world unit along
-    /// the light. w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
+    /// unit of `dot(row, normal)` of those rows; 0 with a manual bias that is not slope-scaled. z: square of the depth
+    /// per world unit along the light. w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
     pub texel: [f32; 4],
-    /// x: texels that rounding adds to the reach of a filter. y: manual normal offset, world units. z: warped maps: by
+    /// x: texels that are added to the reach of a filter: what rounding loses, or what makes it a slope-scaled bias. y: manual normal offset, world units. z: warped maps: by
     /// how much of itself a texel outgrows its neighbours in u and in v together, for each unit of w; 0 without
     /// automatic bias. w: side of a texel, texture coordinates.
     pub bias: [f32; 4],
@@ -409,7 +409,7 @@ pub struct ViewUniforms {
     pub rect: [f32; 4],
     /// Warped maps: how far a plane of normal n falls over a texel step at (u, v), along its normal and in world units,
     /// is w² (n·V − v n·W) for a step in u and w² (u n·W − n·U) for a step in v, with U this row, V `across_v` and W
-    /// `across_w` (x, y, z of each). All 0 without automatic bias. w: array layer of the map.
+    /// `across_w` (x, y, z of each). All 0 with a manual bias that is not slope-scaled. w: array layer of the map.
     pub across_u: [f32; 4],
     /// Warped maps: V of `across_u`. w, of the first view of several that are found by containment: eye depth at which
     /// shadows begin to give way to light.

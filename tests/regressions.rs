@@ -128,14 +128,15 @@ fn bounds_around_nan_are_refused_by_name() {
 /// A manual bias of the largest f32 overflowed to infinity in the uniforms.
 #[test]
 fn manual_bias_is_bounded() {
-    let fit = |depth_world, normal_texels| {
-        let bias = Bias::Manual { depth_world, normal_texels };
+    let fit = |depth_world, slope_texels, normal_texels| {
+        let bias = Bias::Manual { depth_world, slope_texels, normal_texels };
         Remix { bias, ..techniques::fsm() }.fit(&input(Scene::within(room(1e-3))))
     };
-    assert!(matches!(fit(f32::MAX, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
-    assert!(matches!(fit(0.0, f32::INFINITY), Err(FitError::NotFinite { field: "bias.normal_texels", .. })));
-    assert!(matches!(fit(-1.0, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
-    let frame = fit(1e9, 1e9).unwrap();
+    assert!(matches!(fit(f32::MAX, 0.0, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
+    assert!(matches!(fit(0.0, 2e9, 0.0), Err(FitError::OutOfRange { field: "bias.slope_texels", .. })));
+    assert!(matches!(fit(0.0, 0.0, f32::INFINITY), Err(FitError::NotFinite { field: "bias.normal_texels", .. })));
+    assert!(matches!(fit(-1.0, 0.0, 0.0), Err(FitError::OutOfRange { field: "bias.depth_world", .. })));
+    let frame = fit(1e9, 1e9, 1e9).unwrap();
     assert!(frame.uniforms.views[0].bias.iter().all(|value| value.is_finite()));
 }
 

@@ -38,15 +38,24 @@ use crate::math::space::{Clip, Map, Render};
 use crate::warp::window::Window;
 
 /// How a receiver is kept from shadowing itself.
+///
+/// Casters' pipelines may cull front faces as well (`cull_mode: Some(Face::Front)`; they run counter-clockwise in a
+/// map as in the camera's picture) where all casters are closed. `docs/BIAS.md` measures all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bias {
     /// From the texel size, the reach of the filter and the precision of positions. Bounded; needs no tuning.
     #[default]
     Automatic,
-    /// By hand, for engines that have tuned theirs. The automatic bias is off; only rounding is still accounted for.
+    /// By hand, for engines that have tuned theirs: the sum of three. The automatic bias is off; only the rounding of
+    /// depths is still accounted for. All of them 0 is no bias.
     Manual {
-        /// Distance along the light, world units, 0 to 1e9.
+        /// Constant: distance along the light, world units, 0 to 1e9.
         depth_world: f32,
+        /// Slope-scaled: along the light, by what the receiver's plane falls over a step of this many texels along both
+        /// axes of the map, 0 to 1e9. That is the polygon offset of rasterisers but for the sum of both slopes in place
+        /// of the larger one, and for linear depth in warped maps as well. It grows as the tangent of incidence and is
+        /// held at a cosine of 0.01. A point reads up to 0.5 texels away, hardware 2×2 up to 1.
+        slope_texels: f32,
         /// Distance along the surface normal, in texels (their longer side), 0 to 1e9.
         normal_texels: f32,
     },
@@ -56,6 +65,10 @@ pub enum Bias {
 /// lift along the light is at most 4.7 texels. Towards 0 it grows as the tangent and shadows of near objects detach;
 /// towards 1 every lift is along the normal and shadow edges shift by up to a texel on slanted ground.
 const GRAZING_COSINE: f32 = 0.3;
+
+/// Cosine of incidence below which a slope-scaled bias grows no more (89.4°): the clamp of engines. At 0.1 steep walls
+/// keep their acne; at 0 the bias is infinite where light passes along a surface.
+const STEEPEST_COSINE: f32 = 0.01;
 
 /// Rasterisers snap vertices to 1/256 of a texel, which moves a plane by as much; both ends of an edge may move.
 const RASTER_SNAP: f64 = 2.0 / 256.0;
@@ -84,6 +97,24 @@ pub(crate) struct BiasInput<'a> {
     pub(crate) reach: DVec3,
     /// Its texels in the layers.
     pub(crate) tile: Tile,
+    /// How far one sample of the filter reads, texels.
+    pub(crate) tap_reach: f64,
+}
+
+/// What the shader's arithmetic is given for a bias.
+struct Knobs {
+    /// Whether the receiver's plane is known to it: 1, or 0.
+    plane: f64,
+    /// What is added to every reach, texels.
+    reach: f64,
+    /// Cosine below which receivers are lifted along their normal.
+    grazing: f32,
+    /// Whether the lift grows with the texels of a warped map: 1, or 0.
+    growing: f64,
+    /// Distance along the light, depths of the map.
+    constant: f64,
+    /// Distance along the normal, world units.
+    offset: f64,
 }
 
 impl Bias {
@@ -99,36 +130,48 @@ impl Bias {
         // Tiles lie elsewhere in their layer than where clip space begins.
         let lost_texels = side * lost + (of - side) * half_ulp;
         let lost_depth = DEPTH_ROUNDINGS * (rounding(input.clip_from_render.row(2)) + half_ulp);
-        // How far a plane falls over a texel for each unit of a row along its normal; not at all for a manual bias.
-        let automatic = if self == Self::Automatic { 1.0 } else { 0.0 };
-        let texel = input.texel * automatic;
+        // What is added to a reach is lost whatever the filter is.
+        let knobs = self.knobs(input, RASTER_SNAP + lost_texels);
+        // How far a plane falls over a texel for each unit of a row along its normal.
+        let texel = input.texel * knobs.plane;
         let per_row = |row: [f32; 4]| 1.0 / Vec4::from_array(row).truncate().as_dvec3().length();
         let depth_per_unit = 1.0 / input.depth_range;
         uniforms.texel = [
             texel.x * per_row(uniforms.u_from_render),
             texel.y * per_row(uniforms.v_from_render),
             depth_per_unit * depth_per_unit,
-            f64::from(GRAZING_COSINE) * depth_per_unit,
+            f64::from(knobs.grazing) * depth_per_unit,
         ]
         .map(narrowed);
         let (across, growth) = input.across();
         let [mut across_u, across_v, across_w] =
-            across.map(|row| (row * automatic).extend(0.0).to_array().map(narrowed));
+            across.map(|row| (row * knobs.plane).extend(0.0).to_array().map(narrowed));
         across_u[3] = input.tile.layer as f32;
         (uniforms.across_u, uniforms.across_v, uniforms.across_w) = (across_u, across_v, across_w);
-        let (constant, offset) = match self {
-            Self::Automatic => (0.0, 0.0),
-            Self::Manual { depth_world, normal_texels } => {
-                let texel = input.texel.max_element();
-                (f64::from(depth_world) / input.depth_range, f64::from(normal_texels) * texel)
-            }
-        };
-        // What is added to a reach is lost whatever the filter is.
-        let lost_reach = RASTER_SNAP + lost_texels;
-        uniforms.bias = [lost_reach, offset, growth * automatic, 1.0 / of].map(narrowed);
+        uniforms.bias = [knobs.reach, knobs.offset, growth * knobs.growing, 1.0 / of].map(narrowed);
         // A constant bias is the same as a depth row that starts earlier, and costs nothing there.
         let depth = input.clip_from_render.row(2);
-        uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - constant].map(narrowed);
+        uniforms.depth_from_render = [depth.x, depth.y, depth.z, depth.w - lost_depth - knobs.constant].map(narrowed);
+    }
+}
+
+impl Bias {
+    /// What the shader is given; `lost` texels of reach go to rounding.
+    fn knobs(self, input: &BiasInput, lost: f64) -> Knobs {
+        match self {
+            Self::Automatic => {
+                Knobs { plane: 1.0, reach: lost, grazing: GRAZING_COSINE, growing: 1.0, constant: 0.0, offset: 0.0 }
+            }
+            // The shader adds the reach of its filter to that of the uniforms: what is left is the slope's.
+            Self::Manual { depth_world, slope_texels, normal_texels } => Knobs {
+                plane: if slope_texels > 0.0 { 1.0 } else { 0.0 },
+                reach: f64::from(slope_texels) - input.tap_reach,
+                grazing: STEEPEST_COSINE,
+                growing: 0.0,
+                constant: f64::from(depth_world) / input.depth_range,
+                offset: f64::from(normal_texels) * input.texel.max_element(),
+            },
+        }
     }
 }
 
@@ -162,8 +205,12 @@ impl BiasInput<'_> {
 impl Bias {
     /// Checks manual values.
     pub(crate) fn validate(self) -> Result<(), FitError> {
-        let Self::Manual { depth_world, normal_texels } = self else { return Ok(()) };
-        for (field, value) in [("bias.depth_world", depth_world), ("bias.normal_texels", normal_texels)] {
+        let Self::Manual { depth_world, slope_texels, normal_texels } = self else { return Ok(()) };
+        for (field, value) in [
+            ("bias.depth_world", depth_world),
+            ("bias.slope_texels", slope_texels),
+            ("bias.normal_texels", normal_texels),
+        ] {
             let value = finite(field, f64::from(value))?;
             if !(0.0..=LARGEST_MANUAL).contains(&value) {
                 return Err(FitError::OutOfRange { field, value, legal: "0 to 1e9" });

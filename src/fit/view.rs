@@ -247,7 +247,8 @@ impl Fitter<'_> {
         let reach = vertices.iter().fold(DVec3::ZERO, |reach, vertex| reach.max(vertex.abs()));
         let texel = drawn.size() / f64::from(self.tile.side - 2 * self.texels.ring);
         let depth_range = depth.far - depth.near;
-        BiasInput { window: drawn, texel, depth_range, clip_from_render, texture_from_render, reach, tile: self.tile }
+        let (tile, tap_reach) = (self.tile, self.texels.filter.tap_reach());
+        BiasInput { window: drawn, texel, depth_range, clip_from_render, texture_from_render, reach, tile, tap_reach }
     }
 
     /// Corner and side of the tile, and the width of its ring, texture coordinates.

@@ -24,6 +24,8 @@
 //! line through their values crosses ½. Each truth edge takes the Euclidean distance to the nearest mask edge that
 //! darkens along the same direction, at most [`EDGE_SEARCH_PX`]; silhouettes, where nothing can be matched, stay out.
 
+pub mod detachment;
+
 use super::truth::{JOINS_BELOW, JOINS_RIGHT, Truth};
 
 /// How near to an edge pixel, in pixels along both axes, a wrong pixel counts as an edge's: an edge displaced by up to

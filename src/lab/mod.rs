@@ -23,6 +23,7 @@ pub mod sparse_city;
 pub mod stack;
 pub mod statistics;
 pub mod subject;
+pub mod teapot;
 pub mod tour;
 pub mod treeline;
 pub mod truth;

@@ -41,6 +41,27 @@ impl Subject {
         Self { model, objects, bounds }
     }
 
+    /// What is left of it as a caster where front faces are culled: triangles that are turned away from a directional
+    /// light, as `Face::Front` and counter-clockwise front faces leave them. Objects keep their bounds, so that frames
+    /// are the same. Closed solids alone still cast whole shadows; ground and leaves cast none, or half.
+    #[must_use]
+    pub fn back_faces(&self, travel: DVec3) -> Self {
+        let model = &self.model;
+        let mut left = SceneModel { triangles: Vec::new(), triangle_cutout: Vec::new(), ..model.clone() };
+        for (object, range) in left.objects.iter_mut().zip(&model.objects) {
+            let start = left.triangles.len();
+            for triangle in range.clone() {
+                let [a, b, c] = model.corners(triangle);
+                if (b - a).cross(c - a).dot(travel) > 0.0 {
+                    left.triangles.push(model.triangles[triangle]);
+                    left.triangle_cutout.extend(model.triangle_cutout.get(triangle));
+                }
+            }
+            *object = start..left.triangles.len();
+        }
+        Self { model: left, ..self.clone() }
+    }
+
     /// The scene of a case: built in, or from a file.
     ///
     /// # Errors

@@ -15,7 +15,8 @@ use crate::{Case, support};
 pub(crate) fn frame(dice: &mut Dice, key: WgslKey, side: u32, index: usize) -> ShadowFrame {
     let travel = (DVec3::new(0.0, -1.0, 0.0) + dice.vector(0.9).as_dvec3()).normalize();
     let bias = match index % 4 {
-        3 => Bias::Manual { depth_world: 0.02, normal_texels: 1.5 },
+        3 if index % 8 == 3 => Bias::Manual { depth_world: 0.02, slope_texels: 0.0, normal_texels: 1.5 },
+        3 => Bias::Manual { depth_world: 0.01, slope_texels: 2.5, normal_texels: 0.5 },
         _ => Bias::Automatic,
     };
     let warp = match (key.shape, index % 8) {

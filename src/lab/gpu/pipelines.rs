@@ -32,23 +32,30 @@ pub(super) struct PairDescriptor<'a> {
     pub(super) depth: wgpu::DepthStencilState,
     /// The picture's format; none for depth passes.
     pub(super) target: Option<wgpu::TextureFormat>,
+    /// Faces that are not drawn.
+    pub(super) cull: Option<wgpu::Face>,
 }
 
-/// The library's pass over casters: its layout, its matrix, its vertex function.
-pub(super) fn casters(gpu: &Gpu, shape: MapShape, caster_layout: &wgpu::BindGroupLayout) -> Pair {
+/// The library's pass over casters: its layout, its matrix, its vertex function; without the faces that are culled.
+pub(super) fn casters(
+    gpu: &Gpu,
+    shape: MapShape,
+    caster_layout: &wgpu::BindGroupLayout,
+    cull: Option<wgpu::Face>,
+) -> Pair {
     let (stage, solid) = match shape {
         MapShape::Affine | MapShape::ProjectiveDepth => {
             (concat!(include_str!("casters.wgsl"), include_str!("casters_library.wgsl")), None)
         }
         MapShape::Projective => (include_str!("casters_projective.wgsl"), Some("write_depth")),
     };
-    caster_pair(gpu, "casters", &[wgsl::CASTER, stage].concat(), solid, caster_layout)
+    caster_pair(gpu, "casters", &[wgsl::CASTER, stage].concat(), solid, caster_layout, cull)
 }
 
 /// A pass over casters with one matrix, written by hand.
 pub(super) fn casters_by_hand(gpu: &Gpu, caster_layout: &wgpu::BindGroupLayout) -> Pair {
     let text = concat!(include_str!("casters.wgsl"), include_str!("casters_by_hand.wgsl"));
-    caster_pair(gpu, "casters by hand", text, None, caster_layout)
+    caster_pair(gpu, "casters by hand", text, None, caster_layout, None)
 }
 
 /// A caster pair of any text with the entry points `throw_solid`, `throw_cut` and `cut`, and a fragment stage for solid
@@ -59,6 +66,7 @@ fn caster_pair(
     text: &str,
     solid: Option<&'static str>,
     layout: &wgpu::BindGroupLayout,
+    cull: Option<wgpu::Face>,
 ) -> Pair {
     pair(
         gpu,
@@ -70,6 +78,7 @@ fn caster_pair(
             cut: ("throw_cut", "cut"),
             depth: gpu::depth_stencil_state(),
             target: None,
+            cull,
         },
     )
 }
@@ -86,6 +95,7 @@ pub(super) fn camera_depth(gpu: &Gpu) -> Pair {
             cut: ("place_cut", "cut_depth"),
             depth: camera_depth_state(true),
             target: None,
+            cull: None,
         },
     )
 }
@@ -189,6 +199,7 @@ pub(super) fn receiver_pair(
             cut: (cut, "receive_cut"),
             depth: camera_depth_state(false),
             target: Some(MASK_FORMAT),
+            cull: None,
         },
     )
 }
@@ -228,8 +239,8 @@ fn pair(gpu: &Gpu, descriptor: &PairDescriptor) -> Pair {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &vertex_buffers(),
             },
-            // Both sides of every triangle: foliage and cloth have no inside.
-            primitive: wgpu::PrimitiveState::default(),
+            // Both sides of every triangle, unless told otherwise: foliage and cloth have no inside.
+            primitive: wgpu::PrimitiveState { cull_mode: descriptor.cull, ..Default::default() },
             depth_stencil: Some(descriptor.depth.clone()),
             multisample: wgpu::MultisampleState::default(),
             fragment: fragment.map(|entry_point| wgpu::FragmentState {

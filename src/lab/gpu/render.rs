@@ -55,11 +55,20 @@ impl Renderer {
         let caster_layout = caster_layout(gpu);
         Self {
             key,
-            casters: pipelines::casters(gpu, key.shape, &caster_layout),
+            casters: pipelines::casters(gpu, key.shape, &caster_layout, None),
             depth: pipelines::camera_depth(gpu),
             receivers: pipelines::receivers(gpu, key),
             caster_layout,
         }
+    }
+
+    /// The same, whose maps hold back faces alone: casters with `cull_mode: Some(Face::Front)`, counter-clockwise front
+    /// faces. Closed solids need no bias on their lit sides then; ground and leaves cast nothing, or half.
+    #[must_use]
+    pub fn of_back_faces(gpu: &Gpu, key: WgslKey) -> Self {
+        let renderer = Self::new(gpu, key);
+        let casters = pipelines::casters(gpu, key.shape, &renderer.caster_layout, Some(wgpu::Face::Front));
+        Self { casters, ..renderer }
     }
 
     /// The same for a key with [`Pcf::Box5x5`](crate::Pcf::Box5x5), whose box is made `taps` bilinear taps to an axis

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A truth on one surface, all valid, depth growing with the row; light (1) or shadow (0) per pixel, area as centre.
-fn truth(width: u32, rows: &[&str]) -> Truth {
+pub(super) fn truth(width: u32, rows: &[&str]) -> Truth {
     let centre: Vec<f32> = rows.concat().bytes().map(|byte| f32::from(u8::from(byte == b'1'))).collect();
     let (count, height) = (centre.len(), rows.len() as u32);
     assert_eq!(count, (width * height) as usize);
