@@ -79,6 +79,7 @@ mod focus;
 mod frame;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+mod grazing;
 mod light;
 mod light_space;
 mod math;
@@ -108,6 +109,7 @@ pub use frame::{
     CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, Select, ShadowFrame,
     ShadowUniforms, ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
+pub use grazing::Grazing;
 pub use light::Light;
 pub use remix::{DepthLaw, Remix};
 pub use report::{LeftOut, Part, Why};

@@ -5,6 +5,7 @@ pub mod convolution;
 pub mod depth;
 pub mod exponential;
 pub mod footprint;
+pub mod grazing;
 pub mod moments;
 pub mod pcf;
 pub mod read;
