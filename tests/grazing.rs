@@ -135,14 +135,16 @@ fn the_rule_answers_a_half_where_light_grazes() {
                 found
             });
             let [off, printed, continuous] = found;
-            assert!(off.band > 0.02, "{name}: the light grazes somewhere: {off:?}");
+            assert!(off.band > 0.001, "{name}: the light grazes somewhere: {off:?}");
             // A half is within a half of everything, and by a half off where all is light or shadow.
-            for (rule, other) in [(printed, 0.5), (continuous, 0.5)] {
+            for rule in [printed, continuous] {
                 let [leak, acne] = rule.interior;
                 assert!(leak <= off.interior[0] && acne <= off.interior[1], "{name}: {rule:?} and {off:?}");
-                assert!(rule.grazed <= other + 0.01, "{name}: {rule:?}");
+                assert!(rule.grazed <= 0.5 + 0.01, "{name}: {rule:?}");
             }
             assert!(printed.grazed > 0.35, "{name}: {printed:?}");
+            // Why the rule is off unless it is asked for: what the maps say there is nearer to the truth.
+            assert!(off.grazed < printed.grazed && off.grazed < continuous.grazed, "{name}: {off:?}");
         }
     }
 }

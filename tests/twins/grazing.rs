@@ -128,7 +128,8 @@ fn twins_agree_on_grazing_light() {
         let run = |grazing| -> Vec<f32> {
             let key = WgslKey { grazing, ..key };
             let map = MapBudget { side: 64, layers: u32::from(key.maps), views: u32::from(key.maps) };
-            let frame = ShadowFrame { wgsl: key, map, ..fitted.clone() };
+            let mut frame = fitted.clone();
+            (frame.wgsl, frame.map) = (key, map);
             let maps = ShadowMaps::new(gpu.device(), &ShadowMapsDescriptor { label: None, key, map }).unwrap();
             maps.prepare(gpu.queue(), &frame).unwrap();
             // Nearest or farthest: rounding decides about no comparison.
