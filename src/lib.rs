@@ -100,6 +100,7 @@ pub mod lab;
 
 pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use content::Content;
+pub use encoding::eye_blur::{EyeBlur, EyeBlurUniforms};
 pub use encoding::stage::{Encoding, Prefilter, Radius, SUN_ANGLE};
 pub use error::FitError;
 pub use fit::bias::Bias;

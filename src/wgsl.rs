@@ -230,6 +230,13 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 /// several found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
+/// The whole text of the passes that blur a picture's shadow term, for engines that do without the module `gpu`: vertex
+/// entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_eye_blur_along_row` and
+/// `antumbra_eye_blur_along_column`. Bindings in group 0: 0 [`EyeBlurUniforms`](crate::EyeBlurUniforms), 1 the shadow
+/// term, 2 the depth buffer.
+pub const EYE_BLUR: &str =
+    concat!(include_str!("../shaders/eye_blur.wgsl"), include_str!("../shaders/eye_blur_pass.wgsl"));
+
 /// What an engine calls, for one map.
 const ONE_MAP: &str = "
 fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {

@@ -4,6 +4,7 @@ pub mod blur;
 pub mod convolution;
 pub mod depth;
 pub mod exponential;
+pub mod eye_blur;
 pub mod footprint;
 pub mod grazing;
 pub mod moments;
