@@ -183,6 +183,8 @@ fn keys_are_all_there() {
     let filters = Pcf::ALL.len() + Moments::all().count();
     assert_eq!(keys.len(), filters * MapShape::ALL.len() * (1 + several) * Grazing::ALL.len());
     assert_eq!(keys.iter().collect::<std::collections::HashSet<_>>().len(), keys.len());
+    // There is room for the fragments of each.
+    assert!(keys.iter().all(|key| wgsl::library(*key).len() > 5));
     assert!(keys.iter().all(|key| key.maps > 1 || (key.select == Select::Depth && !key.blend)));
     for (filter, shape) in Pcf::ALL.iter().flat_map(|filter| MapShape::ALL.map(|shape| (*filter, shape))) {
         assert_eq!(
