@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, DVec4, Mat4, UVec4, Vec4};
 
 use crate::content::{Content, Place};
+use crate::grazing::Grazing;
 use crate::report::{LeftOut, Part, Why};
 use crate::scene::{Aabb, MapBudget};
 use crate::texel::{BlurUniforms, Texel};
@@ -38,6 +39,8 @@ pub struct WgslKey {
     pub select: Select,
     /// Whether neighbouring maps are blended into each other; never for one map.
     pub blend: bool,
+    /// What stands in for the maps where the light grazes a surface.
+    pub grazing: Grazing,
 }
 
 impl Default for WgslKey {
@@ -49,6 +52,7 @@ impl Default for WgslKey {
             maps: 1,
             select: Select::default(),
             blend: false,
+            grazing: Grazing::Off,
         }
     }
 }

@@ -57,13 +57,13 @@
 mod clear;
 mod depth_range;
 mod error;
+mod eye_blur;
 mod layout;
 mod prefilter;
 
 use arrayvec::ArrayVec;
 
-pub use depth_range::DepthRangeProbe;
-pub use error::GpuError;
+pub use self::{depth_range::DepthRangeProbe, error::GpuError, eye_blur::ScreenBlur, eye_blur::ScreenBlurViews};
 pub use layout::{caster_layout, layout_entries};
 pub use prefilter::{supported, texture_format};
 pub use wgpu;

@@ -79,6 +79,7 @@ mod focus;
 mod frame;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+mod grazing;
 mod light;
 mod light_space;
 mod math;
@@ -99,6 +100,7 @@ pub mod lab;
 
 pub use camera::{Camera, ClipDepth, DEFAULT_VIEWPORT, Projection};
 pub use content::Content;
+pub use encoding::eye_blur::{EyeBlur, EyeBlurUniforms};
 pub use encoding::stage::{Encoding, Prefilter, Radius, SUN_ANGLE};
 pub use error::FitError;
 pub use fit::bias::Bias;
@@ -108,6 +110,7 @@ pub use frame::{
     CullVolume, Footprint, MAX_CULL_PLANES, MAX_LEFT_OUT, MAX_VIEWS, MapShape, Pcf, Select, ShadowFrame,
     ShadowUniforms, ShadowView, TexelSize, ViewUniforms, WgslKey,
 };
+pub use grazing::Grazing;
 pub use light::Light;
 pub use remix::{DepthLaw, Remix};
 pub use report::{LeftOut, Part, Why};

@@ -11,6 +11,7 @@ use crate::fit::snap::Stabilise;
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
 use crate::frame::{MapShape, ShadowFrame, WgslKey};
+use crate::grazing::Grazing;
 use crate::report::{LeftOut, Part, Why};
 use crate::split::Split;
 use crate::technique::{FitInput, ShadowTechnique};
@@ -56,6 +57,8 @@ pub struct Remix {
     /// Limits published warps to the strength that is predicted to be no worse than uniform. Default: on; off
     /// reproduces the papers. Least-error and fixed strengths are what they are either way.
     pub guard: bool,
+    /// What stands in for the maps where the light grazes a surface. Default: off, maps say what they see.
+    pub grazing: Grazing,
 }
 
 impl Default for Remix {
@@ -69,6 +72,7 @@ impl Default for Remix {
             share: Share::default(),
             stabilise: Stabilise::default(),
             guard: true,
+            grazing: Grazing::Off,
         }
     }
 }
@@ -83,7 +87,7 @@ impl ShadowTechnique for Remix {
             (true, DepthLaw::Projective) => MapShape::ProjectiveDepth,
         };
         let (select, blend) = self.split.selection();
-        WgslKey { texel, filter, shape, maps: self.split.maps(), select, blend }
+        WgslKey { texel, filter, shape, maps: self.split.maps(), select, blend, grazing: self.grazing }
     }
 
     fn fit(&self, input: &FitInput) -> Result<ShadowFrame, FitError> {

@@ -2,6 +2,7 @@
 
 use crate::encoding::stage::{Encoding, Prefilter};
 use crate::frame::Select;
+use crate::grazing::Grazing;
 use crate::remix::Remix;
 use crate::split::{DepthSplits, Scheme, Split};
 use crate::texel::{MomentFormat, MomentKind, Moments};
@@ -117,8 +118,8 @@ named! {
     /// The same for depths known to be within the map, Hausdorff.
     msm_hausdorff "msm-hausdorff" { warp: Warp::Focused, encoding: moments(MomentKind::Hausdorff) }
 
-    /// The Shadow Mapping Remix Approach: practical splits, a trapezoid for each, variance, as the thesis has it. Its
-    /// trapezoids are not guarded. Errata: depths are the light's (TH-7), planes move between the ends alone (TH-10),
+    /// The Shadow Mapping Remix Approach: practical splits, a trapezoid for each, variance, and ½ where
+    /// the light grazes a surface, as the thesis has it. Its trapezoids are not guarded. Errata: depths are the light's (TH-7), planes move between the ends alone (TH-10),
     /// and Chebyshev's bound is one of light (TH-13).
     ///
     /// J. Abrantes de Oliveira, *Analysis and proposal of a shadow mapping remix approach*, Universidade do Minho,
@@ -127,7 +128,8 @@ named! {
         split: Split::Depth(PSSM),
         warp: Warp::Trapezoidal { focus: Focus::default() },
         encoding: moments(MomentKind::Variance),
-        guard: false
+        guard: false,
+        grazing: Grazing::Printed
     }
 }
 

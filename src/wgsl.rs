@@ -21,8 +21,8 @@
 //! which turns the disc by `noise` of a whole turn, 0 to 1 (interleaved gradient noise of the pixel, say), so that
 //! bands become grain; `antumbra_visibility` is that with a noise of 0.
 //!
-//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), filters of texels, and engines that
-//! want the cheapest fragments:
+//! The same in two stages, for one affine map (uniform ones; see [`MapShape`]), filters of texels, no rule for grazing
+//! light ([`Grazing`]), and engines that want the cheapest fragments:
 //!
 //! ```wgsl
 //! fn antumbra_place(position: vec3f, normal: vec3f) -> AntumbraLookup   // in the vertex stage
@@ -40,6 +40,7 @@
 //! `antumbra_visibility`. Choose the side that is looked at from the eye position; all vertices of a face then agree.
 
 mod disc;
+mod grazing;
 mod moments;
 
 use core::fmt::Write as _;
@@ -48,6 +49,7 @@ use std::borrow::Cow;
 use arrayvec::ArrayVec;
 
 use crate::frame::{MAX_VIEWS, MapShape, Pcf, Select, WgslKey};
+use crate::grazing::Grazing;
 use crate::texel::{Moments, Texel};
 
 /// Where the generated bindings go: `group`, and three binding numbers from `first` on (uniforms, map, sampler).
@@ -63,7 +65,7 @@ pub struct Bindings {
 pub const BINDING_COUNT: u32 = 3;
 
 /// Most fragments of a key.
-const MAX_FRAGMENTS: usize = 20;
+const MAX_FRAGMENTS: usize = 21;
 
 /// The fragments of a key, in order; concatenated they are one valid module without bindings or entry points.
 ///
@@ -158,6 +160,7 @@ fn fragments(key: WgslKey) -> ArrayVec<Cow<'static, str>, MAX_FRAGMENTS> {
         include_str!("../shaders/visibility_one.wgsl")
     };
     fragments.extend(disc::noisy(key, visible, disc::VISIBLE_STEADY));
+    fragments.extend(grazing::rule(key.grazing));
     fragments
 }
 
@@ -227,6 +230,13 @@ pub const CASTER: &str = include_str!("../shaders/caster.wgsl");
 /// several found by depth `antumbra_uniforms.views[antumbra_index(view_depth)]`.
 pub const FOOTPRINT: &str = include_str!("../shaders/footprint.wgsl");
 
+/// The whole text of the passes that blur a picture's shadow term, for engines that do without the module `gpu`: vertex
+/// entry point `antumbra_everything` (three vertices); fragment entry points `antumbra_eye_blur_along_row` and
+/// `antumbra_eye_blur_along_column`. Bindings in group 0: 0 [`EyeBlurUniforms`](crate::EyeBlurUniforms), 1 the shadow
+/// term, 2 the depth buffer.
+pub const EYE_BLUR: &str =
+    concat!(include_str!("../shaders/eye_blur.wgsl"), include_str!("../shaders/eye_blur_pass.wgsl"));
+
 /// What an engine calls, for one map.
 const ONE_MAP: &str = "
 fn antumbra_visibility(position: vec3f, normal: vec3f, view_depth: f32) -> f32 {
@@ -289,12 +299,12 @@ pub fn prefilter(moments: Moments) -> String {
 }
 
 /// What an engine calls, and how it finds its map.
-fn calls(key: WgslKey) -> ArrayVec<Cow<'static, str>, 3> {
+fn calls(key: WgslKey) -> ArrayVec<Cow<'static, str>, 4> {
     const INDEX: &str = include_str!("../shaders/select_index.wgsl");
     const ROOM: &str = include_str!("../shaders/select_room.wgsl");
     let mut calls = ArrayVec::new();
     if key.maps <= 1 {
-        calls.extend(disc::noisy(key, ONE_MAP, disc::VISIBILITY_STEADY));
+        calls.extend(grazing::called(key, ONE_MAP));
         return calls;
     }
     let (how, call) = match (key.select, key.blend) {
@@ -304,7 +314,7 @@ fn calls(key: WgslKey) -> ArrayVec<Cow<'static, str>, 3> {
         (Select::Finest, true) => (ROOM, include_str!("../shaders/select_finest_blend.wgsl")),
     };
     calls.push(how.into());
-    calls.extend(disc::noisy(key, call, disc::VISIBILITY_STEADY));
+    calls.extend(grazing::called(key, call));
     calls
 }
 
@@ -314,19 +324,23 @@ impl WgslKey {
         let depths = Pcf::ALL.into_iter().map(|filter| Self { filter, ..Self::default() });
         let moments = Moments::all().map(|moments| Self { texel: Texel::Moments(moments), ..Self::default() });
         let shaped = |key: Self| MapShape::ALL.into_iter().map(move |shape| Self { shape, ..key });
-        depths.chain(moments).flat_map(shaped).flat_map(|key| {
-            let many = (2..=MAX_VIEWS as u8).flat_map(move |maps| {
-                let ways = Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]);
-                ways.map(move |(select, blend)| Self { maps, select, blend, ..key })
-            });
-            core::iter::once(key).chain(many)
-        })
+        depths
+            .chain(moments)
+            .flat_map(shaped)
+            .flat_map(|key| {
+                let many = (2..=MAX_VIEWS as u8).flat_map(move |maps| {
+                    let ways = Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]);
+                    ways.map(move |(select, blend)| Self { maps, select, blend, ..key })
+                });
+                core::iter::once(key).chain(many)
+            })
+            .flat_map(|key| Grazing::ALL.map(|grazing| Self { grazing, ..key }))
     }
 
     /// Whether its text has the lookup in two stages, `antumbra_place` and `antumbra_lit`.
     #[must_use]
     pub fn has_two_stages(self) -> bool {
-        let is_plain = self.texel == Texel::Depth && !self.filter.is_spread();
+        let is_plain = self.texel == Texel::Depth && !self.filter.is_spread() && self.grazing == Grazing::Off;
         self.maps == 1 && self.shape == MapShape::Affine && is_plain
     }
 }

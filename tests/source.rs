@@ -15,6 +15,7 @@ const LEVELS: &[(&str, u8)] = &[
     ("scene", 1),
     ("content", 1),
     ("texel", 1),
+    ("grazing", 1),
     ("frame", 2),
     ("encoding", 3),
     ("technique", 3),

@@ -1,5 +1,5 @@
-//! Several maps: the Rust twins of `shaders/select_*.wgsl`, `map_many.wgsl` and
-//! `visibility_many.wgsl`.
+//! Several maps: the Rust twins of `shaders/select_*.wgsl`, `map_many.wgsl`,
+//! `visibility_many.wgsl` and `visibility_grazed.wgsl`.
 //!
 //! Each function has the name and the arithmetic of its shader twin, in f32, operation by operation. The software
 //! renderer of the lab runs on them.
@@ -11,6 +11,7 @@
 use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4};
 
 use super::depth::{CompareMap, Lookup, antumbra_look_noisy, antumbra_visible_noisy};
+use super::grazing::{ANTUMBRA_GRAZED, antumbra_grazing};
 use super::read::antumbra_filtered;
 use crate::frame::{MAX_VIEWS, Select, ShadowUniforms, ViewUniforms, WgslKey};
 
@@ -84,6 +85,25 @@ pub fn antumbra_visibility<M: CompareMap>(
 /// Twin of `antumbra_visibility_noisy`: the same by a filter whose disc is turned by `noise`, 0 to 1.
 #[must_use]
 pub fn antumbra_visibility_noisy<M: CompareMap>(
+    key: WgslKey,
+    uniforms: &ShadowUniforms,
+    layers: &[M],
+    position: Vec3,
+    normal: Vec3,
+    view_depth: f32,
+    noise: f32,
+) -> f32 {
+    let row = Vec4::from_array(uniforms.views[0].depth_from_render);
+    let grazed = antumbra_grazing(key.grazing, normal, row);
+    if grazed >= 1.0 {
+        return ANTUMBRA_GRAZED;
+    }
+    let lit = antumbra_mapped(key, uniforms, layers, position, normal, view_depth, noise);
+    lit * (1.0 - grazed) + ANTUMBRA_GRAZED * grazed
+}
+
+/// Twin of `antumbra_mapped`: what maps say, without a rule for grazing light.
+fn antumbra_mapped<M: CompareMap>(
     key: WgslKey,
     uniforms: &ShadowUniforms,
     layers: &[M],

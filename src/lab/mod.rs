@@ -6,6 +6,7 @@ pub mod comparison;
 pub mod cpu;
 pub mod depth_error;
 pub mod experiment;
+pub mod eye_blur;
 pub mod files;
 pub mod footprint;
 pub mod gltf;

@@ -47,11 +47,12 @@ pub(super) fn look(key: WgslKey) -> &'static str {
 
 /// A text that hands positions and normals on; for filters with a disc the same with noise, and what calls it without.
 pub(super) fn noisy(key: WgslKey, text: &'static str, steady: &'static str) -> ArrayVec<Cow<'static, str>, 2> {
-    const WITH_NOISE: [(&str, &str); 6] = [
+    const WITH_NOISE: [(&str, &str); 7] = [
         ("antumbra_look(", "antumbra_look_noisy("),
         ("antumbra_visible(", "antumbra_visible_noisy("),
         ("antumbra_visibility(", "antumbra_visibility_noisy("),
         (", normal)", ", normal, noise)"),
+        (", view_depth)", ", view_depth, noise)"),
         ("normal: vec3f)", "normal: vec3f, noise: f32)"),
         ("view_depth: f32)", "view_depth: f32, noise: f32)"),
     ];

@@ -1,7 +1,7 @@
 //! Keys for checks that are too slow for all of them.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use antumbra::{MapShape, MomentFormat, MomentKind, Moments, Pcf, Select, Texel, WgslKey};
+use antumbra::{Grazing, MapShape, MomentFormat, MomentKind, Moments, Pcf, Select, Texel, WgslKey};
 
 /// Fewest, usual and most maps of several.
 const COUNTS: [u8; 3] = [2, 4, 8];
@@ -24,10 +24,20 @@ fn is_usual(key: &WgslKey) -> bool {
     key.texel == Texel::Depth || different().contains(&key.texel)
 }
 
+/// Keys with a rule for grazing light that differ in all that its text sees of them: a disc or none, one map or several
+/// and how they are found. The rest shows that depths and moments, and shapes, go with it.
+fn is_grazed(key: &WgslKey) -> bool {
+    let plain = key.filter == Pcf::Hardware2x2 && (key.texel == Texel::Depth || key.texel == different()[0]);
+    key.grazing != Grazing::Off && (plain || key.filter == Pcf::Disc) && matches!(key.maps, 1 | 4)
+}
+
 /// Every key of maps of depths; of moments, every one of a single map, every one of four affine maps that are found by
-/// containment, and in some, every other choice.
+/// containment, and in some, every other choice. All of these without a rule for grazing light; and some with it.
 pub(crate) fn covering() -> impl Iterator<Item = WgslKey> {
     WgslKey::all().filter(|key| {
+        if key.grazing != Grazing::Off {
+            return is_grazed(key);
+        }
         let four = key.maps == 4 && key.select == Select::Finest && !key.blend && key.shape == MapShape::Affine;
         key.texel == Texel::Depth || key.maps == 1 || four || (is_usual(key) && COUNTS.contains(&key.maps))
     })
@@ -35,9 +45,10 @@ pub(crate) fn covering() -> impl Iterator<Item = WgslKey> {
 
 /// Every key of one map of depths, and of one affine map of moments; every way to find the map among few, some and most
 /// of them in every shape, with the default filter: of how it filters, the text that selects knows nothing but the
-/// reach.
+/// reach. All of these without a rule for grazing light; and some affine ones with it.
 pub(crate) fn chosen() -> impl Iterator<Item = WgslKey> {
     WgslKey::all().filter(|key| match key.maps {
+        _ if key.grazing != Grazing::Off => is_grazed(key) && key.shape == MapShape::Affine,
         1 => is_usual(key) || key.shape == MapShape::Affine,
         maps => is_usual(key) && COUNTS.contains(&maps) && key.filter == Pcf::Hardware2x2,
     })
@@ -49,10 +60,12 @@ fn chosen_keys_have_every_choice() {
     let (shapes, moments, usual) = (MapShape::ALL.len(), Moments::all().count(), 1 + different().len());
     let depths = Pcf::ALL.len() * shapes;
     let one = depths + different().len() * (shapes - 1) + moments;
-    assert_eq!(chosen().count(), one + COUNTS.len() * WAYS * shapes * usual);
+    // Two rules, for two filters and one kind of moments, of one map and of four.
+    let grazed = (Grazing::ALL.len() - 1) * 3 * (1 + WAYS);
+    assert_eq!(chosen().count(), one + COUNTS.len() * WAYS * shapes * usual + grazed);
     let of_depths = depths * (1 + 7 * WAYS);
     let some = different().len() * COUNTS.len() * WAYS * shapes;
     // Some of four affine maps found by containment are among the different ones.
     let four = moments - different().len();
-    assert_eq!(covering().count(), of_depths + moments * shapes + some + four);
+    assert_eq!(covering().count(), of_depths + moments * shapes + some + four + grazed * shapes);
 }

@@ -41,7 +41,8 @@ fn twins_agree_on_several_maps() {
     for shape in MapShape::ALL {
         for (select, blend) in Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]) {
             for filter in [Pcf::Hardware2x2, Pcf::Box3x3, Pcf::Pixel, Pcf::Disc, Pcf::Pcss] {
-                let key = WgslKey { texel: Texel::Depth, filter, shape, maps: MAPS, select, blend };
+                let key =
+                    WgslKey { texel: Texel::Depth, filter, shape, maps: MAPS, select, blend, ..WgslKey::default() };
                 // All maps in use, and one left over.
                 for views in [MAPS, MAPS - 1] {
                     let tally = compare(&gpu, key, views.into());

@@ -6,7 +6,7 @@ use std::{env, fs};
 
 use antumbra::transpile::Shader;
 use antumbra::transpile::naga::{self, Expression, Statement};
-use antumbra::{MapShape, Moments, Pcf, Select, Texel, WgslKey, wgsl};
+use antumbra::{Grazing, MapShape, Moments, Pcf, Select, Texel, WgslKey, wgsl};
 
 use crate::host::PLACES;
 use crate::walkers::{any_statement, calls};
@@ -114,6 +114,11 @@ fn page() -> String {
     for (select, blend) in Select::ALL.into_iter().flat_map(|select| [(select, false), (select, true)]) {
         let blended = if blend { ", blended" } else { "" };
         row(&mut text, &format!("{select:?}{blended}"), WgslKey { maps: 4, select, blend, ..one });
+    }
+    text.push_str("\n## By the rule for grazing light, one affine map with the default filter\n");
+    text.push_str(COLUMNS);
+    for grazing in Grazing::ALL {
+        row(&mut text, &format!("{grazing:?}"), WgslKey { grazing, ..one });
     }
     text
 }

@@ -4,7 +4,9 @@ use std::mem::offset_of;
 
 use antumbra::transpile::Shader;
 use antumbra::transpile::naga::{self, Expression, Statement, TypeInner};
-use antumbra::{MAX_VIEWS, MapShape, Moments, Pcf, Select, ShadowUniforms, Texel, ViewUniforms, WgslKey, wgsl};
+use antumbra::{
+    Grazing, MAX_VIEWS, MapShape, Moments, Pcf, Select, ShadowUniforms, Texel, ViewUniforms, WgslKey, wgsl,
+};
 
 use crate::host::{PLACES, has_two_stages, host, lookups};
 use crate::keys::covering;
@@ -165,6 +167,8 @@ fn two_stages_are_for_one_affine_map_alone() {
         assert_eq!(has("antumbra_lookup_projective"), !affine, "{key:?}");
         let noisy = key.texel == Texel::Depth && key.filter.is_disc();
         assert_eq!([has("antumbra_visibility_noisy"), has("antumbra_visible_noisy")], [noisy; 2], "{key:?}");
+        let grazed = key.grazing != Grazing::Off;
+        assert_eq!([has("antumbra_grazing"), has("antumbra_mapped")], [grazed; 2], "{key:?}");
         for name in ["antumbra_visibility", "antumbra_visible", "antumbra_caster", "antumbra_caster_depth"] {
             assert!(has(name), "{key:?}: {name}");
         }
@@ -177,8 +181,10 @@ fn keys_are_all_there() {
     let keys: Vec<_> = WgslKey::all().collect();
     let several = (MAX_VIEWS - 1) * Select::ALL.len() * 2;
     let filters = Pcf::ALL.len() + Moments::all().count();
-    assert_eq!(keys.len(), filters * MapShape::ALL.len() * (1 + several));
+    assert_eq!(keys.len(), filters * MapShape::ALL.len() * (1 + several) * Grazing::ALL.len());
     assert_eq!(keys.iter().collect::<std::collections::HashSet<_>>().len(), keys.len());
+    // There is room for the fragments of each.
+    assert!(keys.iter().all(|key| wgsl::library(*key).len() > 5));
     assert!(keys.iter().all(|key| key.maps > 1 || (key.select == Select::Depth && !key.blend)));
     for (filter, shape) in Pcf::ALL.iter().flat_map(|filter| MapShape::ALL.map(|shape| (*filter, shape))) {
         assert_eq!(

@@ -1,0 +1,15 @@
+// Below every row of a light; keeps a view without one from dividing by zero.
+const ANTUMBRA_GRAZING_SMALLEST: f32 = 1e-30;
+
+// Cosines of 88 and of 82 degrees.
+const ANTUMBRA_GRAZING_LEAST: f32 = 0.034899496;
+const ANTUMBRA_GRAZING_MOST: f32 = 0.1391731;
+
+// The share of a receiver's visibility that is a half instead of what maps say: all of it from 88 degrees between the
+// light and the normal on, none up to 82 degrees, and where there is no light or no normal.
+fn antumbra_grazing(normal: vec3f, depth_from_render: vec4f) -> f32 {
+    let scale = length(depth_from_render.xyz);
+    let cosine = -dot(depth_from_render.xyz, normal) / max(scale, ANTUMBRA_GRAZING_SMALLEST);
+    let is_known = scale > ANTUMBRA_GRAZING_SMALLEST && any(normal != vec3f());
+    return select(0.0, 1.0 - smoothstep(ANTUMBRA_GRAZING_LEAST, ANTUMBRA_GRAZING_MOST, cosine), is_known);
+}
