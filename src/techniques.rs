@@ -1,7 +1,7 @@
 //! Techniques by name, with the paper each is from.
 
 use crate::encoding::stage::{Encoding, Prefilter};
-use crate::frame::Select;
+use crate::frame::{Pcf, Select};
 use crate::grazing::Grazing;
 use crate::remix::Remix;
 use crate::split::{DepthSplits, Scheme, Split};
@@ -131,6 +131,11 @@ named! {
         guard: false,
         grazing: Grazing::Printed
     }
+
+    /// The same remix of what measurements justify: cascades of equal predicted error with least-error warps, and four
+    /// comparisons over the part of the map that a pixel covers instead of moments, which leak in foliage. This crate's
+    /// own; docs/THESIS.md has each step.
+    smra_plus "smra-plus" { encoding: Encoding::Depth(Pcf::Pixel), split: Split::Depth(DepthSplits::DEFAULT) }
 }
 
 /// The technique of that name, if there is one.

@@ -114,7 +114,7 @@ fn the_rule_answers_a_half_where_light_grazes() {
         let truth = Truth::trace(&case, &subject.model, &|| {});
         let visible = Visible::draw(&subject.model, &setting(&viewpoint).camera, setting(&viewpoint).origin);
         // The automatic bias, and a constant one as small as papers have it.
-        let naked = Bias::Manual { depth_world: 0.02, normal_texels: 0.0 };
+        let naked = Bias::Manual { depth_world: 0.02, slope_texels: 0.0, normal_texels: 0.0 };
         let techniques = [
             ("fsm", techniques::fsm()),
             ("fsm, constant bias", Remix { bias: naked, ..techniques::fsm() }),

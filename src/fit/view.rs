@@ -150,20 +150,9 @@ impl Fitter<'_> {
         let mut uniforms = self.uniforms(&rows, &clip_from_render);
         let bias = self.bias_input(&drawn, &body.vertices, &rows, depth, &clip_from_render);
         self.bias.write(&bias, &mut uniforms);
-        let blur = match self.encoding {
-            Encoding::Depth(_) | Encoding::Soft { .. } => BlurUniforms::default(),
-            Encoding::Moments(prefilter) => {
-                let (across, receivers) = (bias.across().0, &body.vertices[..]);
-                let placed = Placed { rows: &rows, across, light, texel: bias.texel, receivers };
-                self.blur(&prefilter, &placed, texels, &mut uniforms, frame)
-            }
-        };
-        if let Some(angle) = self.encoding.angle() {
-            self.penumbra(angle, bias.texel, bias.depth_range, &mut uniforms, frame);
-        }
-        if self.encoding.key().1 == Pcf::Pixel {
-            self.pixel(&mut uniforms);
-        }
+        let placed =
+            Placed { rows: &rows, across: bias.across().0, light, texel: bias.texel, receivers: &body.vertices };
+        let blur = self.filter(&placed, bias.depth_range, &mut uniforms, frame);
         let squares = |vertex: DVec3| drawn.texel_at(light.ray(vertex).truncate(), texel).map(DVec2::length_squared);
         let same = window.bend.is_none().then(|| (texel * texel).to_array());
         let mut extremes =
@@ -193,6 +182,25 @@ impl Fitter<'_> {
             frame.uniforms.counts[0] += 1;
         }
         Ok(())
+    }
+
+    /// Writes what the lookups of an encoding need, and gives what its passes need.
+    fn filter(
+        &self,
+        placed: &Placed,
+        depth_range: f64,
+        uniforms: &mut ViewUniforms,
+        frame: &mut ShadowFrame,
+    ) -> BlurUniforms {
+        match self.encoding {
+            Encoding::Moments(prefilter) => return self.blur(&prefilter, placed, &self.texels, uniforms, frame),
+            Encoding::Depth(Pcf::Pixel) => self.pixel(uniforms),
+            Encoding::Depth(_) | Encoding::Soft { .. } => {}
+        }
+        if let Some(angle) = self.encoding.angle() {
+            self.penumbra(angle, placed.texel, depth_range, uniforms, frame);
+        }
+        BlurUniforms::default()
     }
 
     /// Says what was cut of a view.
