@@ -2,7 +2,8 @@
 // do not interpolate. Beyond the map it is what its rim stores, as if there were no other map beside it:
 // the centres of its rim are farther from that in smaller levels.
 fn antumbra_stored_in(map: texture_2d_array<f32>, look: AntumbraLookup, level: u32) -> vec4f {
-    let size = vec2i(textureDimensions(map, level));
+    // Sizes of levels that differ from pixel to pixel are not asked for: some adapters answer all alike.
+    let size = max(vec2i(textureDimensions(map)) >> vec2u(level), vec2i(1));
     let rim = antumbra_rim(map, look.level);
     let at = clamp(look.uv, look.low + rim, look.high - rim) * vec2f(size) - 0.5;
     let first = vec2i(floor(at));

@@ -36,9 +36,10 @@ use arrayvec::ArrayVec;
 use glam::DVec3;
 
 use super::depth::{MAX_PLANES, Scheme, planes as planes_of};
-use super::profile::Profile;
+use super::profile::{Profile, Section};
 use crate::camera::Camera;
 use crate::scene::DepthRange;
+use crate::warp::search::valley;
 
 /// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
 const START: f32 = 0.75;
@@ -47,11 +48,9 @@ const START: f32 = 0.75;
 /// nothing.
 const SWEEPS: u32 = 3;
 
-/// Steps of each search: each leaves 62 % of the interval, eight leave 2 % of it.
-const STEPS: u32 = 8;
-
-/// The golden ratio less one.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// How near to its best place each search leaves a plane, as a share of the way between its neighbours: the sum is flat
+/// there, and they move next.
+const NEAR: f64 = 0.01;
 
 /// Classes of depth in which samples are counted. Fewer blur where things are; more are emptier than samples are many.
 const CLASSES: usize = 48;
@@ -87,26 +86,14 @@ pub(crate) fn planes(cost: &Cost, maps: u8, before: &[f64]) -> ArrayVec<f64, MAX
     if cost.of(&found) < (1.0 - KEPT) * cost.of(&kept) { found } else { kept }
 }
 
-/// The place of the least cost between two depths, by golden section; even steps are even steps of logarithmic depth
-/// where there is one.
-fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
-    let ratio = if low > 0.0 { (high / low).ln() } else { 0.0 };
-    let at = |share: f64| if ratio > 0.0 { low * (ratio * share).exp() } else { low + (high - low) * share };
-    let (mut left, mut right) = (0.0, 1.0);
-    let (mut one, mut other) = (1.0 - GOLDEN, GOLDEN);
-    let (mut cost_one, mut cost_other) = (cost(at(one)), cost(at(other)));
-    for _ in 0..STEPS {
-        if cost_one <= cost_other {
-            (right, other, cost_other) = (other, one, cost_one);
-            one = right - GOLDEN * (right - left);
-            cost_one = cost(at(one));
-        } else {
-            (left, one, cost_one) = (one, other, cost_other);
-            other = left + GOLDEN * (right - left);
-            cost_other = cost(at(other));
-        }
-    }
-    at(0.5 * (left + right)).clamp(low, high)
+/// A plane, and what summands of (1) need of it.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    /// Its place in classes of depth.
+    class: f64,
+    /// Share of what is seen before it.
+    before: f64,
+    section: Section,
 }
 
 /// Length of a range in the logarithm of depth; in depth where it has none.
@@ -145,30 +132,49 @@ impl<'a> Cost<'a> {
         if class.is_finite() { class.clamp(0.0, CLASSES as f64) } else { 0.0 }
     }
 
-    /// Share of what is seen that lies before a depth.
-    fn before(&self, depth: f64) -> f64 {
-        let class = self.class(depth);
+    /// The depth of a class.
+    fn depth(&self, class: f64) -> f64 {
+        let DepthRange { near, far } = self.range;
+        let along = class / self.scale;
+        let depth = if near > 0.0 { near * along.exp() } else { near + along };
+        depth.clamp(near, far)
+    }
+
+    /// Share of what is seen before a class.
+    fn before(&self, class: f64) -> f64 {
         let whole = (class as usize).min(CLASSES - 1);
         self.seen[whole] + (self.seen[whole + 1] - self.seen[whole]) * (class - whole as f64)
     }
 
+    fn plane(&self, class: f64, depth: f64) -> Plane {
+        Plane { class, before: self.before(class), section: self.profile.section(depth) }
+    }
+
     /// (3).
     pub(crate) fn seen(&self, near: f64, far: f64) -> f64 {
-        self.before(far) - self.before(near)
+        self.before(self.class(far)) - self.before(self.class(near))
     }
 
     /// Planes of a local optimum.
     fn searched(&self, maps: u8) -> ArrayVec<f64, MAX_PLANES> {
         let start = Scheme::Practical { lambda: START, offset: 0.0 };
-        let mut planes = planes_of(&start, maps, self.range.near, self.range.far).unwrap_or_default();
+        let mut depths = planes_of(&start, maps, self.range.near, self.range.far).unwrap_or_default();
+        let mut planes: ArrayVec<Plane, MAX_PLANES> =
+            depths.iter().map(|depth| self.plane(self.class(*depth), *depth)).collect();
         for _ in 0..SWEEPS {
             for index in 1..planes.len().saturating_sub(1) {
                 let (before, after) = (planes[index - 1], planes[index + 1]);
-                planes[index] =
-                    least(before, after, |plane| self.of_slice(before, plane) + self.of_slice(plane, after));
+                let at = |class: f64| self.plane(class, self.depth(class));
+                let ends = [before.class, after.class];
+                let (class, _) = valley(ends, NEAR * (ends[1] - ends[0]), |class| {
+                    let plane = at(class);
+                    self.of_slice(&before, &plane) + self.of_slice(&plane, &after)
+                });
+                planes[index] = at(class);
+                depths[index] = planes[index].section.depth();
             }
         }
-        planes
+        depths
     }
 
     /// Planes of another range, in this one: its ends, and what is beyond them moved to them.
@@ -184,12 +190,14 @@ impl<'a> Cost<'a> {
     }
 
     /// (1).
-    fn of(&self, planes: &[f64]) -> f64 {
-        planes.windows(2).map(|pair| self.of_slice(pair[0], pair[1])).sum()
+    fn of(&self, depths: &[f64]) -> f64 {
+        let plane = |depth: &f64| self.plane(self.class(*depth), *depth);
+        let planes: ArrayVec<Plane, MAX_PLANES> = depths.iter().take(MAX_PLANES).map(plane).collect();
+        planes.windows(2).map(|pair| self.of_slice(&pair[0], &pair[1])).sum()
     }
 
     /// One summand of (1).
-    fn of_slice(&self, near: f64, far: f64) -> f64 {
-        self.seen(near, far) * self.profile.size(near, far)
+    fn of_slice(&self, near: &Plane, far: &Plane) -> f64 {
+        (far.before - near.before) * self.profile.between(&near.section, &far.section)
     }
 }

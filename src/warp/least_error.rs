@@ -36,7 +36,7 @@
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 
-use super::search::{least, not_worse, roughly_least};
+use super::search::{crossing, least, not_worse, roughly_least};
 use super::sheaf::Sheaf;
 use super::sight::Sight;
 use crate::camera::Camera;
@@ -59,8 +59,8 @@ const RELUCTANCE: f64 = 0.2;
 /// whose warp is far too strong for what it serves keeps a third of the wrong pixels that this costs.
 const SPARED: f64 = 0.05;
 
-/// Halvings of the way between two strengths: 16 leave 2e-5 of it. Fewer show as steps when the camera moves.
-const BISECTIONS: u32 = 16;
+/// How near to that limit strengths are found, as a share of the error. More shows as steps when the camera moves.
+const CLOSE: f64 = 1e-6;
 
 /// Most samples that are asked whether maps hold them. More move strengths by less than they cost time.
 const MOST_ASKED: usize = 128;
@@ -242,15 +242,10 @@ impl Predictor {
         let own = self.least(limit);
         let best = roughly_least(limit, |strength| served.error(strength));
         let most = (1.0 + SPARED) * served.error(best);
-        let (mut inside, mut outside) = (best, own);
         if !(served.error(own) > most) {
             return own;
         }
-        for _ in 0..BISECTIONS {
-            let middle = inside.midpoint(outside);
-            *(if served.error(middle) > most { &mut outside } else { &mut inside }) = middle;
-        }
-        inside
+        crossing(best, own, CLOSE * most, |strength| served.error(strength) - most)
     }
 
     /// A strength, limited to what is predicted to be no worse than `uniform`, the error without a warp.

@@ -1,7 +1,7 @@
 //! Searching a strength: one valley, no allocation, a fixed number of steps.
 //!
 //! # References
-//! - Kiefer, *Sequential minimax search for a maximum*, 1953: golden-section search.
+//! - Brent, *Algorithms for minimization without derivatives*, 1973, chapter 5: parabolas and golden sections.
 //! - Anderson & Björck, *A new high order method of regula falsi type for computing a root of an equation*, 1973.
 
 /// The golden ratio less one.
@@ -17,45 +17,109 @@ fn strength_of(share: f64) -> f64 {
     share / (1.0 - share)
 }
 
-/// Steps: each leaves 62 % of the interval. 26 leave 4e-6 of it, which moves no map of 16384 texels by one. Fewer show
-/// as steps of the map when the camera moves; more are lost in the rounding of errors that are flat at the bottom.
-const STEPS: u32 = 26;
+/// How far from the least share the search may end: it moves no map of 16384 texels by one. Larger
+/// shows as steps of the map when the camera moves; smaller is lost in the rounding of errors that are flat at the
+/// bottom.
+const FINE: f64 = 2e-6;
 
-/// Steps that leave 3 % of the interval, and a tenth of a per cent of the error.
-const FEW_STEPS: u32 = 7;
+/// The same where the error itself is all that matters: it is flat, and this is a tenth of a per cent of it.
+const ROUGH: f64 = 1e-2;
+
+/// Most steps: golden sections alone take 27 to [`FINE`]; parabolas that do not come closer can double that.
+const MOST_STEPS: u32 = 54;
 
 /// κλ in [0, `limit`] of the least error; 0 where no strength is better than none.
 ///
-/// Exact to 4e-6 (1 + κλ)² for errors that fall to one valley and rise behind it. 33 evaluations.
+/// Exact to 4e-6 (1 + κλ)² for errors that fall to one valley and rise behind it. About 15 evaluations where they are
+/// smooth.
 pub(crate) fn least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
-    least_in(STEPS, limit, error)
+    least_in(FINE, limit, error)
 }
 
-/// The same to 1e-2 (1 + κλ)², where the error itself is all that matters: it is flat there. 14 evaluations.
+/// The same to 2e-2 (1 + κλ)². About 8 evaluations.
 pub(crate) fn roughly_least(limit: f64, error: impl Fn(f64) -> f64) -> f64 {
-    least_in(FEW_STEPS, limit, error)
+    least_in(ROUGH, limit, error)
 }
 
-fn least_in(steps: u32, limit: f64, error: impl Fn(f64) -> f64) -> f64 {
-    let at = |share: f64| error(strength_of(share));
-    let (mut low, mut high) = (0.0, share_of(limit));
-    let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut error_left, mut error_right) = (at(left), at(right));
-    for _ in 0..steps {
-        if error_left <= error_right {
-            (high, right, error_right) = (right, left, error_left);
-            left = high - GOLDEN * (high - low);
-            error_left = at(left);
+fn least_in(tolerance: f64, limit: f64, error: impl Fn(f64) -> f64) -> f64 {
+    let (share, least) = valley([0.0, share_of(limit)], tolerance, |share| error(strength_of(share)));
+    // The ends are candidates themselves.
+    let last = error(limit);
+    let (best, least) = if last < least { (limit, last) } else { (strength_of(share), least) };
+    if least < error(0.0) { best } else { 0.0 }
+}
+
+/// The bottom of a valley between two places, and the error there: Brent's method, parabolas through the three best
+/// points, and golden sections where those lead nowhere.
+pub(crate) fn valley([mut low, mut high]: [f64; 2], tolerance: f64, error: impl Fn(f64) -> f64) -> (f64, f64) {
+    let start = low + (1.0 - GOLDEN) * (high - low);
+    let at_start = (start, error(start));
+    let [mut best, mut second, mut third] = [at_start; 3];
+    let (mut step, mut before) = (0.0_f64, 0.0_f64);
+    for _ in 0..MOST_STEPS {
+        let middle = low.midpoint(high);
+        if (best.0 - middle).abs() <= 2.0 * tolerance - 0.5 * (high - low) {
+            break;
+        }
+        let parabola = bottom(best, second, third);
+        let small = parabola.abs() < 0.5 * before.abs();
+        if small && low < best.0 + parabola && best.0 + parabola < high {
+            (before, step) = (step, parabola);
+            // Not at the ends, where nothing would be learnt.
+            if best.0 + step - low < 2.0 * tolerance || high - best.0 - step < 2.0 * tolerance {
+                step = tolerance.copysign(middle - best.0);
+            }
         } else {
-            (low, left, error_left) = (left, right, error_right);
-            right = low + GOLDEN * (high - low);
-            error_right = at(right);
+            before = if best.0 < middle { high - best.0 } else { low - best.0 };
+            step = (1.0 - GOLDEN) * before;
+        }
+        let place = best.0 + if step.abs() >= tolerance { step } else { tolerance.copysign(step) };
+        let tried = (place, error(place));
+        if tried.1 <= best.1 {
+            *(if tried.0 < best.0 { &mut high } else { &mut low }) = best.0;
+            (third, second, best) = (second, best, tried);
+        } else {
+            *(if tried.0 < best.0 { &mut low } else { &mut high }) = tried.0;
+            if tried.1 <= second.1 || second.0 == best.0 {
+                (third, second) = (second, tried);
+            } else if tried.1 <= third.1 || third.0 == best.0 || third.0 == second.0 {
+                third = tried;
+            }
         }
     }
-    // The ends are candidates themselves.
-    let middle = strength_of(low.midpoint(high));
-    let best = if error(limit) < error(middle) { limit } else { middle };
-    if error(best) < error(0.0) { best } else { 0.0 }
+    best
+}
+
+/// Step from a point to the bottom of the parabola through three; not finite where there is none.
+fn bottom(best: (f64, f64), second: (f64, f64), third: (f64, f64)) -> f64 {
+    let one = (best.0 - second.0) * (best.1 - third.1);
+    let other = (best.0 - third.0) * (best.1 - second.1);
+    -((best.0 - second.0) * one - (best.0 - third.0) * other) / (2.0 * (one - other))
+}
+
+/// Most steps in [`crossing`]: false position takes four to six where the function is nearly straight.
+const CROSSING_STEPS: u32 = 12;
+
+/// The place between `inside`, where `excess` is not positive, and `outside`, where it is, at which it is at most
+/// `close`; or one nearer to `inside`. False position, Illinois.
+pub(crate) fn crossing(inside: f64, outside: f64, close: f64, excess: impl Fn(f64) -> f64) -> f64 {
+    let (mut inside, mut outside) = ((inside, excess(inside)), (outside, excess(outside)));
+    let mut last = None;
+    for _ in 0..CROSSING_STEPS {
+        let place = inside.0 - inside.1 * (outside.0 - inside.0) / (outside.1 - inside.1);
+        let at = excess(place);
+        if !(at.abs() > close) {
+            return place;
+        }
+        let is_outside = at > 0.0;
+        let again = last == Some(is_outside);
+        last = Some(is_outside);
+        let (replaced, kept) = if is_outside { (&mut outside, &mut inside) } else { (&mut inside, &mut outside) };
+        *replaced = (place, at);
+        // An end that stays twice is weighed less.
+        kept.1 *= if again { 0.5 } else { 1.0 };
+    }
+    inside.0
 }
 
 /// Most steps in [`not_worse`]: false position with the remedy of Anderson and Björck takes half as many as a rule.
