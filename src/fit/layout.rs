@@ -149,6 +149,7 @@ impl Fitter<'_> {
         let held = before.as_ref().map(|before| |place: DVec3| before.holds(place));
         let held = held.as_ref().map(|held| held as &dyn Fn(DVec3) -> bool);
         let [seen, served] = Seen::of(camera, body, &sight, self.input.scene.visible_points, origin, held);
+        let mut predicted = None;
         let choice = match warp {
             Warp::Uniform | Warp::Focused => Choice { frame: sight.frame, strength: 0.0 },
             Warp::Fixed { strength } => Choice { frame: sight.frame_along(sight.view), strength: f64::from(strength) },
@@ -158,16 +159,19 @@ impl Fitter<'_> {
             Warp::Minimax => minimax::choose(&sight, limit(&sight.frame)),
             Warp::LeastError => {
                 let frame = sight.frame_along(seen.axis(&sight));
-                let [own, all] = [&seen, &served].map(|seen| Predictor::along(&frame, seen, &sight));
+                let own = Predictor::along(&frame, &seen, &sight);
                 let limit = limit(&frame);
-                Choice {
-                    frame,
-                    strength: if served == seen { own.least(limit) } else { own.least_sparing(&all, limit) },
-                }
+                let strength = if served == seen {
+                    own.least(limit)
+                } else {
+                    own.least_sparing(&own.of_others(&frame, &served, &sight), limit)
+                };
+                predicted = Some(own);
+                Choice { frame, strength }
             }
         };
         let (around, limit, asked) = (choice.frame, limit(&choice.frame), choice.strength);
-        let predictor = Predictor::along(&around, &seen, &sight);
+        let predictor = predicted.unwrap_or_else(|| Predictor::along(&around, &seen, &sight));
         // Limit it to what texels and positions allow, and to what pays.
         let allowed = asked.min(limit);
         if asked > limit {

@@ -189,21 +189,31 @@ pub(crate) struct Predictor {
 impl Predictor {
     /// Along the axis of `frame`.
     pub(crate) fn along(frame: &WarpFrame, seen: &Seen, sight: &Sight) -> Self {
-        let points = sight.points.chunks(LANES).map(|group| {
-            let at = |lane: usize| frame.coordinates(group[lane.min(group.len() - 1)]);
-            // Points before the top line are there by rounding.
-            [core::array::from_fn(|lane| at(lane).x.max(0.0)), core::array::from_fn(|lane| at(lane).y)]
-        });
-        let points = points.collect();
+        let of_group = |group: &[DVec2]| {
+            let at = |lane: usize| group[lane.min(group.len() - 1)];
+            [core::array::from_fn(|lane| at(lane).x), core::array::from_fn(|lane| at(lane).y)]
+        };
+        let points = outermost(frame, sight).chunks(LANES).map(of_group).collect();
+        let mut along = Self { points, extent: frame.extent, moments: [0.0; 2] };
+        along.moments = along.moments_of(frame, seen, sight);
+        along
+    }
+
+    /// The same along the same axis for other things that are seen.
+    pub(crate) fn of_others(&self, frame: &WarpFrame, seen: &Seen, sight: &Sight) -> Self {
+        Self { moments: self.moments_of(frame, seen, sight), ..self.clone() }
+    }
+
+    fn moments_of(&self, frame: &WarpFrame, seen: &Seen, sight: &Sight) -> [f64; 2] {
         // u = axis · (x − eye) + shift.
         let (axis, shift) = (frame.axis, frame.axis.dot(sight.eye - frame.top));
         let mean = axis.dot(seen.mean);
         let squares = DVec3::new(axis.x * axis.x, 2.0 * axis.x * axis.y, axis.y * axis.y).dot(seen.products);
-        let first = (mean + shift) / frame.extent;
-        let second = (squares + shift * (2.0 * mean + shift)) / (frame.extent * frame.extent);
+        let first = (mean + shift) / self.extent;
+        let second = (squares + shift * (2.0 * mean + shift)) / (self.extent * self.extent);
         // Nothing is seen (a sliver between rays): what wants no warp.
         let share = |moment: f64| if moment.is_finite() { moment.clamp(0.0, 1.0) } else { 1.0 };
-        Self { points, extent: frame.extent, moments: [share(first), share(second)] }
+        [share(first), share(second)]
     }
 
     /// E at κλ = `strength`, world units: the sides of a texel, if one texel were all there is.
@@ -252,6 +262,27 @@ impl Predictor {
     pub(crate) fn guarded(&self, strength: f64) -> f64 {
         not_worse(strength, |strength| self.error(strength))
     }
+}
+
+/// u and c of the vertices of a body that a side line may go through: of those with c > 0 the ones that no other
+/// surpasses in c at no greater u, of those with c < 0 likewise. Where all lie on one side of the axis, all. O(vertices²)
+/// comparisons, for fewer divisions at each strength.
+fn outermost(frame: &WarpFrame, sight: &Sight) -> ArrayVec<DVec2, MAX_VERTICES> {
+    // Points before the top line are there by rounding.
+    let place = |point: &DVec2| frame.coordinates(*point).max(DVec2::new(0.0, f64::NEG_INFINITY));
+    let mut points: ArrayVec<DVec2, MAX_VERTICES> = sight.points.iter().map(place).collect();
+    let both = points.iter().any(|point| point.y > 0.0) && points.iter().any(|point| point.y < 0.0);
+    let mut index = 0;
+    while both && index < points.len() {
+        let point = points[index];
+        let surpassed = |other: &DVec2| other.x <= point.x && other.y * point.y.signum() > point.y.abs();
+        if point.y == 0.0 || points.iter().any(surpassed) {
+            points.swap_remove(index);
+        } else {
+            index += 1;
+        }
+    }
+    points
 }
 
 /// E without a warp, by the view's axis: the scale on which all methods are measured, whatever axis they bend along.
