@@ -7,7 +7,7 @@ use antumbra::encoding::depth::antumbra_look;
 use antumbra::encoding::split::{antumbra_index, antumbra_room};
 use antumbra::{
     Aabb, Camera, DepthSplits, Encoding, FitInput, Part, Pcf, Remix, Scheme, Select, ShadowFrame, ShadowTechnique,
-    Share, Split, Stabilise, Warp, WgslKey,
+    Share, Split, Stabilise, Warp, WgslKey, techniques,
 };
 use common::tally::Tally;
 use common::{Inputs, caster, in_view, inputs, receiver, shares, sound_after};
@@ -205,6 +205,12 @@ proptest! {
         along in 0.0..=1.0_f64,
     ) {
         CASES.count(0);
+        // Every eighth case is a composite by name.
+        let remix = match along.to_bits() % 16 {
+            0 => techniques::smra(),
+            1 => techniques::smra_plus(),
+            _ => remix,
+        };
         // After a frame of another world, or of this one through another lens, or the first one.
         let before = elsewhere.map(|(other, here)| {
             let camera = Camera { projection: other.camera.projection, ..inputs.camera };
