@@ -170,7 +170,9 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
     let mut fragments: ArrayVec<_, 5> = match key.filter {
         Pcf::Point => core::iter::once(include_str!("../shaders/pcf_point.wgsl")).collect(),
         Pcf::Hardware2x2 => core::iter::once(include_str!("../shaders/pcf_hardware.wgsl")).collect(),
-        Pcf::Pixel => core::iter::once(include_str!("../shaders/pcf_pixel.wgsl")).collect(),
+        Pcf::Pixel => [include_str!("../shaders/over_pixel.wgsl"), include_str!("../shaders/pcf_pixel.wgsl")]
+            .into_iter()
+            .collect(),
         Pcf::Box3x3 => [TAP, include_str!("../shaders/pcf_box_three.wgsl")].into_iter().collect(),
         Pcf::Box5x5 => [TAP, include_str!("../shaders/pcf_box_five.wgsl")].into_iter().collect(),
         Pcf::Box7x7 => [TAP, include_str!("../shaders/pcf_box_seven.wgsl")].into_iter().collect(),
@@ -197,8 +199,6 @@ fn look(key: WgslKey) -> ArrayVec<&'static str, 2> {
     let Texel::Moments(moments) = key.texel else {
         return core::iter::once(match key.shape {
             _ if key.filter.is_disc() => disc::look(key),
-            MapShape::Affine if key.filter == Pcf::Pixel => include_str!("../shaders/look_affine_pixel.wgsl"),
-            _ if key.filter == Pcf::Pixel => include_str!("../shaders/look_projective_pixel.wgsl"),
             MapShape::Affine => include_str!("../shaders/look_affine.wgsl"),
             MapShape::Projective | MapShape::ProjectiveDepth => include_str!("../shaders/look_projective.wgsl"),
         })

@@ -57,8 +57,26 @@ pub(super) fn noisy(key: WgslKey, text: &'static str, steady: &'static str) -> A
         ("view_depth: f32)", "view_depth: f32, noise: f32)"),
     ];
     if !is_disc(key) {
-        return core::iter::once(text.into()).collect();
+        return core::iter::once(over_pixel(key, text)).collect();
     }
     let text = WITH_NOISE.iter().fold(text.to_owned(), |text, (plain, noisy)| text.replace(plain, noisy));
     [text.into(), steady.into()].into()
+}
+
+/// A text whose lookups, once their map is found, are spread over the pixel, for the filter that follows it.
+fn over_pixel(key: WgslKey, text: &'static str) -> Cow<'static, str> {
+    const LOOKUPS: [(&str, &str); 2] = [
+        (
+            "antumbra_look(view, position, normal)",
+            "antumbra_over_pixel(view, antumbra_look(view, position, normal), position, normal)",
+        ),
+        (
+            "antumbra_on_map(antumbra_uniforms.views[index], look)",
+            "antumbra_on_map(antumbra_uniforms.views[index],\n        antumbra_over_pixel(antumbra_uniforms.views[index], look, position, normal))",
+        ),
+    ];
+    if key.texel != Texel::Depth || key.filter != Pcf::Pixel {
+        return text.into();
+    }
+    LOOKUPS.iter().fold(text.to_owned(), |text, (plain, over)| text.replace(plain, over)).into()
 }
