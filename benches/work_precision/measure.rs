@@ -1,0 +1,185 @@
+//! Photographs every contender of a case and a size in turns, and races the library against passes by hand.
+
+use std::path::{Path, PathBuf};
+
+use antumbra::lab::case::Case;
+use antumbra::lab::comparison::Assignment;
+use antumbra::lab::experiment::{Backend, RunError, Studio, Timed, stage_names};
+use antumbra::lab::gpu::Race;
+use antumbra::lab::report::Row;
+use antumbra::lab::statistics::quantile;
+use antumbra::lab::subject::Setting;
+use antumbra::lab::truth::{Truth, TruthCache};
+use antumbra::{ShadowTechnique, techniques};
+
+use crate::contenders::{Contender, NINE_TAPS, takes_part};
+
+/// A run this wrong drew something else than shadows: it is reported as failed, not timed as if it had worked.
+pub(crate) const WORST_WRONG: f64 = 0.25;
+
+/// Side of the map of a race, texels: the passes' ratios hardly change with it.
+pub(crate) const RACE_SIZE: u32 = 1024;
+
+/// How much is measured.
+#[derive(Clone, Debug)]
+pub(crate) struct Effort {
+    pub(crate) sizes: Vec<u32>,
+    /// Turns of the contenders.
+    pub(crate) turns: u32,
+    /// Turns of a race: its medians are ratios of neighbours in time.
+    pub(crate) race_turns: u32,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub(crate) struct Record {
+    pub(crate) row: Row,
+    /// Quartiles of the time of a frame over the turns, milliseconds.
+    pub(crate) quartiles: [f64; 2],
+}
+
+/// Receivers and filter of the technique that is measured by it, over receivers with nine comparisons.
+#[derive(Clone, Debug)]
+pub(crate) struct NineTaps {
+    pub(crate) case: String,
+    pub(crate) size: u32,
+    /// Median over turns, in the order of [`NINE_TAPS`].
+    pub(crate) ratios: [f64; 2],
+}
+
+/// What one set of cases gave.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    /// `shared`, or the scene.
+    pub(crate) set: String,
+    pub(crate) records: Vec<Record>,
+    pub(crate) races: Vec<(String, Race)>,
+    pub(crate) nine_taps: Vec<NineTaps>,
+}
+
+/// The built-in scenes, and the case files beside the folder of `ANTUMBRA_SCENES`, by the name of their set; only the
+/// cases whose name contains `only`, at most so many of each set.
+pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<Assignment>)>, String> {
+    let mut sets = Vec::new();
+    for scene in ["treeline", "sparse-city"] {
+        sets.push((scene.to_owned(), vec![Assignment::of_scene(scene)?]));
+    }
+    if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
+        let folder = Path::new(&scenes).join("../cases");
+        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
+        paths.retain(|path| path.extension().is_some_and(|found| found == "json"));
+        paths.sort();
+        let assignments = paths.iter().map(|path| Assignment::of_case(path)).collect::<Result<_, _>>()?;
+        sets.push(("shared".to_owned(), assignments));
+    }
+    for (set, assignments) in &mut sets {
+        let mut left = most;
+        for assignment in &mut *assignments {
+            assignment.cases.retain(|case| only.is_none_or(|only| format!("{set}/{}", case.name).contains(only)));
+            assignment.cases.truncate(left);
+            left -= assignment.cases.len();
+        }
+        assignments.retain(|assignment| !assignment.cases.is_empty());
+    }
+    sets.retain(|(_, assignments)| !assignments.is_empty());
+    Ok(sets)
+}
+
+/// Measures all cases of a set.
+pub(crate) fn measure(
+    backend: &mut Backend,
+    contenders: &[Contender],
+    set: &str,
+    assignments: &[Assignment],
+    effort: &Effort,
+) -> Result<Measured, String> {
+    let mut measured = Measured { set: set.to_owned(), records: Vec::new(), races: Vec::new(), nine_taps: Vec::new() };
+    for assignment in assignments {
+        for case in &assignment.cases {
+            let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
+            for &size in &effort.sizes {
+                let start = std::time::Instant::now();
+                shoot(backend, contenders, assignment, case, &truth, size, effort.turns, &mut measured)?;
+                println!("{set} {} {size}: {:.1} s", case.name, start.elapsed().as_secs_f64());
+            }
+            let mut studio =
+                Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
+            let race = studio.race(&techniques::fsm(), RACE_SIZE, effort.race_turns);
+            measured.races.extend(race.map_err(|error| error.to_string())?.map(|race| (case.name.clone(), race)));
+        }
+    }
+    Ok(measured)
+}
+
+/// All contenders of one case and size.
+#[allow(clippy::too_many_arguments, reason = "a case, its truth, a size, and where the results go")]
+fn shoot(
+    backend: &mut Backend,
+    contenders: &[Contender],
+    assignment: &Assignment,
+    case: &Case,
+    truth: &Truth,
+    size: u32,
+    turns: u32,
+    measured: &mut Measured,
+) -> Result<(), String> {
+    let (name, adapter) = (backend.name().to_owned(), backend.adapter());
+    let mut studio = Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
+    let present: Vec<&Contender> = contenders.iter().filter(|contender| takes_part(contender, size)).collect();
+    let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
+    let timed = studio.shoot_in_turns(&drawn, size, turns);
+    measured.nine_taps.extend(nine_taps(&present, &timed, &case.name, size));
+    for (contender, timed) in present.iter().zip(timed) {
+        let [split, warp, encoding] = stage_names(&contender.remix);
+        let row = Row {
+            scene: assignment.scene.clone(),
+            case: case.name.clone(),
+            technique: contender.name.clone(),
+            split,
+            warp,
+            encoding,
+            size,
+            backend: name.clone(),
+            adapter: adapter.clone(),
+            ..Row::default()
+        };
+        measured.records.push(record(row, timed, truth));
+    }
+    Ok(())
+}
+
+/// A row with what was measured; one that failed, or whose picture is none of shadows, says so.
+fn record(mut row: Row, timed: Result<Timed, RunError>, truth: &Truth) -> Record {
+    let failed = |row: Row, why: String| Record { row: Row { left_out: vec![why], ..row }, quartiles: [f64::NAN; 2] };
+    let blank = row.clone();
+    let scored = timed.and_then(|timed| timed.shot.scores(truth).map(|scores| (timed, scores)));
+    let (timed, scores) = match scored {
+        Ok(scored) => scored,
+        Err(error) => return failed(blank, error.to_string()),
+    };
+    timed.shot.fill(&mut row, &scores);
+    if row.wrong_center >= WORST_WRONG {
+        let why = format!("verification: {:.0} % of the pixels are wrong", 100.0 * row.wrong_center);
+        return failed(blank, why);
+    }
+    let totals: Vec<f64> = timed.passes.iter().map(|turn| 1e-6 * row.fit_ns + turn.iter().sum::<f64>()).collect();
+    row.total_ms = quantile(&totals, 0.5);
+    Record { row, quartiles: [0.25, 0.75].map(|share| quantile(&totals, share)) }
+}
+
+/// Turn by turn, filter and receivers of `smra-plus` over those of nine comparisons.
+fn nine_taps(present: &[&Contender], timed: &[Result<Timed, RunError>], case: &str, size: u32) -> Option<NineTaps> {
+    let turns = |name: &str| -> Option<Vec<f64>> {
+        let at = present.iter().position(|contender| contender.name == name)?;
+        let passes = &timed[at].as_ref().ok()?.passes;
+        Some(passes.iter().map(|[_, filter, receivers]| filter + receivers).collect())
+    };
+    let ours = turns("smra-plus")?;
+    let [of_cascades, of_one] = NINE_TAPS.map(turns);
+    let ratio = |theirs: Vec<f64>| {
+        let ratios: Vec<f64> = ours.iter().zip(theirs).map(|(ours, theirs)| ours / theirs).collect();
+        quantile(&ratios, 0.5)
+    };
+    Some(NineTaps { case: case.to_owned(), size, ratios: [ratio(of_cascades?), ratio(of_one?)] })
+}
