@@ -16,25 +16,27 @@ mod plots;
 mod races;
 mod summary;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
+use antumbra::lab::bias_matrix::Picture;
 use antumbra::lab::cli;
 use antumbra::lab::experiment::{Backend, BackendChoice};
 use antumbra::lab::files::write_whole;
 use antumbra::lab::report::write_wide_csv;
 
 use contenders::{Contender, contenders, sizes};
-use measure::{Effort, Measured, measure, sets};
+use measure::{Effort, Measured, Session, sets};
 
-/// Turns of the contenders.
-const TURNS: u32 = 5;
+/// Turns of the contenders, and those with large maps. Fewer leave quartiles to chance, more take longer than 20 minutes
+/// on two cores.
+const TURNS: [u32; 2] = [5, 3];
 
 /// Turns of a race.
 const RACE_TURNS: u32 = 31;
 
 /// Both with `--quick`.
-const QUICK_TURNS: [u32; 2] = [3, 7];
+const QUICK_TURNS: ([u32; 2], u32) = ([3, 3], 7);
 
 /// Columns of the table after those of every table: quartiles of `total_ms` over the turns.
 const MORE: [&str; 2] = ["total_q1_ms", "total_q3_ms"];
@@ -61,7 +63,7 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
     }
     println!("{} ({})", backend.adapter(), backend.name());
     let contenders = contenders(&backend);
-    let [turns, race_turns] = if quick { QUICK_TURNS } else { [TURNS, RACE_TURNS] };
+    let (turns, race_turns) = if quick { QUICK_TURNS } else { (TURNS, RACE_TURNS) };
     let effort = Effort { sizes: sizes(quick), turns, race_turns };
     let mut sets = sets(only, if quick { 1 } else { usize::MAX })?;
     if quick {
@@ -69,9 +71,10 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
         cases.for_each(|case| case.viewport = case.viewport.map(|side| side.div_ceil(2)));
     }
     // Draw it.
+    let mut session = Session { backend: &mut backend, contenders: &contenders, effort: &effort };
     let mut measured = Vec::new();
     for (set, assignments) in &sets {
-        measured.push(measure(&mut backend, &contenders, set, assignments, &effort)?);
+        measured.push(session.measure(set, assignments)?);
     }
     let biases = bias::measure()?;
     // Write the table, the curves and the page.
@@ -97,12 +100,12 @@ fn meta(backend: &Backend, quick: bool, only: Option<&str>, start: Instant) -> V
 }
 
 fn write_all(
-    folder: &PathBuf,
+    folder: &Path,
     meta: &[(&'static str, String)],
     contenders: &[Contender],
     effort: &Effort,
     measured: &[Measured],
-    biases: &antumbra::lab::bias_matrix::Picture,
+    biases: &Picture,
 ) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("cannot make {} ({error})", folder.display()))?;
     let rows: Vec<_> = measured

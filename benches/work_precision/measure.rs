@@ -1,6 +1,7 @@
 //! Photographs every contender of a case and a size in turns, and races the library against passes by hand.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use antumbra::lab::case::Case;
 use antumbra::lab::comparison::Assignment;
@@ -20,14 +21,24 @@ pub(crate) const WORST_WRONG: f64 = 0.25;
 /// Side of the map of a race, texels: the passes' ratios hardly change with it.
 pub(crate) const RACE_SIZE: u32 = 1024;
 
+/// Maps from this side on take most of the time: they get fewer turns, texels.
+pub(crate) const LARGE: u32 = 2048;
+
 /// How much is measured.
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
     pub(crate) sizes: Vec<u32>,
-    /// Turns of the contenders.
-    pub(crate) turns: u32,
+    /// Turns of the contenders, and those of maps of [`LARGE`] texels and more.
+    pub(crate) turns: [u32; 2],
     /// Turns of a race: its medians are ratios of neighbours in time.
     pub(crate) race_turns: u32,
+}
+
+impl Effort {
+    /// Turns at a size.
+    fn turns(&self, size: u32) -> u32 {
+        self.turns[usize::from(size >= LARGE)]
+    }
 }
 
 /// One run.
@@ -86,67 +97,66 @@ pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<A
     Ok(sets)
 }
 
-/// Measures all cases of a set.
-pub(crate) fn measure(
-    backend: &mut Backend,
-    contenders: &[Contender],
-    set: &str,
-    assignments: &[Assignment],
-    effort: &Effort,
-) -> Result<Measured, String> {
-    let mut measured = Measured { set: set.to_owned(), records: Vec::new(), races: Vec::new(), nine_taps: Vec::new() };
-    for assignment in assignments {
-        for case in &assignment.cases {
-            let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
-            for &size in &effort.sizes {
-                let start = std::time::Instant::now();
-                shoot(backend, contenders, assignment, case, &truth, size, effort.turns, &mut measured)?;
-                println!("{set} {} {size}: {:.1} s", case.name, start.elapsed().as_secs_f64());
-            }
-            let mut studio =
-                Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
-            let race = studio.race(&techniques::fsm(), RACE_SIZE, effort.race_turns);
-            measured.races.extend(race.map_err(|error| error.to_string())?.map(|race| (case.name.clone(), race)));
-        }
-    }
-    Ok(measured)
+/// Who draws what, and how often.
+pub(crate) struct Session<'a> {
+    pub(crate) backend: &'a mut Backend,
+    pub(crate) contenders: &'a [Contender],
+    pub(crate) effort: &'a Effort,
 }
 
-/// All contenders of one case and size.
-#[allow(clippy::too_many_arguments, reason = "a case, its truth, a size, and where the results go")]
-fn shoot(
-    backend: &mut Backend,
-    contenders: &[Contender],
-    assignment: &Assignment,
-    case: &Case,
-    truth: &Truth,
-    size: u32,
-    turns: u32,
-    measured: &mut Measured,
-) -> Result<(), String> {
-    let (name, adapter) = (backend.name().to_owned(), backend.adapter());
-    let mut studio = Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
-    let present: Vec<&Contender> = contenders.iter().filter(|contender| takes_part(contender, size)).collect();
-    let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
-    let timed = studio.shoot_in_turns(&drawn, size, turns);
-    measured.nine_taps.extend(nine_taps(&present, &timed, &case.name, size));
-    for (contender, timed) in present.iter().zip(timed) {
-        let [split, warp, encoding] = stage_names(&contender.remix);
-        let row = Row {
-            scene: assignment.scene.clone(),
-            case: case.name.clone(),
-            technique: contender.name.clone(),
-            split,
-            warp,
-            encoding,
-            size,
-            backend: name.clone(),
-            adapter: adapter.clone(),
-            ..Row::default()
-        };
-        measured.records.push(record(row, timed, truth));
+impl Session<'_> {
+    /// Measures all cases of a set.
+    pub(crate) fn measure(&mut self, set: &str, assignments: &[Assignment]) -> Result<Measured, String> {
+        let mut measured =
+            Measured { set: set.to_owned(), records: Vec::new(), races: Vec::new(), nine_taps: Vec::new() };
+        for assignment in assignments {
+            for case in &assignment.cases {
+                let start = Instant::now();
+                let (truth, _) = TruthCache::default().get(case, &assignment.subject.model, &|| {});
+                for &size in &self.effort.sizes {
+                    let (records, ratios) = self.shoot(assignment, case, &truth, size)?;
+                    measured.records.extend(records);
+                    measured.nine_taps.extend(ratios);
+                }
+                measured.races.extend(self.race(assignment, case)?.map(|race| (case.name.clone(), race)));
+                println!("{set}/{}: {:.0} s", case.name, start.elapsed().as_secs_f64());
+            }
+        }
+        Ok(measured)
     }
-    Ok(())
+
+    /// All contenders of one case and size.
+    fn shoot(
+        &mut self,
+        assignment: &Assignment,
+        case: &Case,
+        truth: &Truth,
+        size: u32,
+    ) -> Result<(Vec<Record>, Option<NineTaps>), String> {
+        let (name, adapter) = (self.backend.name().to_owned(), self.backend.adapter());
+        let mut studio =
+            Studio::new(self.backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
+        let present: Vec<&Contender> = self.contenders.iter().filter(|contender| takes_part(contender, size)).collect();
+        let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
+        let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns(size));
+        let ratios = nine_taps(&present, &timed, &case.name, size);
+        let row = |contender: &Contender| {
+            let [split, warp, encoding] = stage_names(&contender.remix);
+            let (scene, case, technique) = (assignment.scene.clone(), case.name.clone(), contender.name.clone());
+            let (backend, adapter) = (name.clone(), adapter.clone());
+            Row { scene, case, technique, split, warp, encoding, size, backend, adapter, ..Row::default() }
+        };
+        let records =
+            present.iter().zip(timed).map(|(contender, timed)| record(row(contender), timed, truth)).collect();
+        Ok((records, ratios))
+    }
+
+    /// The library's passes beside those by hand.
+    fn race(&mut self, assignment: &Assignment, case: &Case) -> Result<Option<Race>, String> {
+        let mut studio =
+            Studio::new(self.backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
+        studio.race(&techniques::fsm(), RACE_SIZE, self.effort.race_turns).map_err(|error| error.to_string())
+    }
 }
 
 /// A row with what was measured; one that failed, or whose picture is none of shadows, says so.

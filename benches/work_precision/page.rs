@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use antumbra::lab::bias_matrix::Picture;
+use antumbra::lab::report::Row;
 
-use crate::measure::{Effort, Measured, WORST_WRONG};
+use crate::measure::{Effort, LARGE, Measured, WORST_WRONG};
 use crate::summary::{Cell, FIGURES};
 use crate::{bias, plots, races};
 
@@ -42,7 +43,7 @@ pub(crate) fn page(
     }
     text.push('\n');
     races::section(&mut text, measured, effort.race_turns);
-    races::nine_taps(&mut text, measured, effort.turns);
+    races::nine_taps(&mut text, measured);
     words(&mut text, effort);
     for (set, cells) in measured.iter().zip(cells) {
         section(&mut text, set, cells);
@@ -60,14 +61,15 @@ fn words(text: &mut String, effort: &Effort) {
         "## Techniques and encodings\n\n\
          Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself, four taps over the pixel are \
          `smra-plus`), and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
-         size were drawn turn by turn, {} turns forwards and backwards in alternation. Medians over the cases of a set:\n\n\
+         size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in alternation. Medians over the cases of a set:\n\n\
          - *excess*: mean absolute error against the area truth above that of a perfect hard edge, %; negative where filtering beats it;\n\
          - *wrong*: pixels more than half off the centre truth, %; *leak*: those of them that are lit, further than 2 px from edges, %;\n\
          - *ms*: time of a frame (fit, casters, filter, receivers), median over turns, ± half the distance between the quartiles;\n\
          - *MiB*: memory of the maps, with everything that fills them.\n\n\
          **Bold**: on the Pareto front of that error and time, over all contenders and sizes of the set. A run whose picture has {:.0} % wrong \
          pixels or more counts as failed, and a failed run as worse than all others.\n",
-        effort.turns,
+        effort.turns[0],
+        effort.turns[1],
         100.0 * WORST_WRONG
     );
 }
@@ -105,8 +107,7 @@ fn section(text: &mut String, set: &Measured, cells: &[Cell]) {
 /// Who failed, how often, and what they said.
 fn failures(text: &mut String, set: &Measured, cells: &[Cell]) {
     for cell in cells.iter().filter(|cell| cell.failed > 0) {
-        let of =
-            |row: &&antumbra::lab::report::Row| row.technique == cell.name && row.size == cell.size && row.failed();
+        let of = |row: &&Row| row.technique == cell.name && row.size == cell.size && row.failed();
         let said: Vec<String> = (set.records.iter().map(|record| &record.row).filter(of))
             .map(|row| format!("{}: {}", row.case, row.left_out.join("; ")))
             .collect();

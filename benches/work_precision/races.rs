@@ -50,13 +50,13 @@ pub(crate) fn section(text: &mut String, measured: &[Measured], turns: u32) {
 }
 
 /// The receivers of `smra-plus` beside receivers of nine comparisons.
-pub(crate) fn nine_taps(text: &mut String, measured: &[Measured], turns: u32) {
+pub(crate) fn nine_taps(text: &mut String, measured: &[Measured]) {
     let _ = writeln!(
         text,
         "## Receivers beside nine comparisons\n\n\
          Filter and receivers of `smra-plus` over receivers with a box of nine bilinear comparisons (`Pcf::Box5x5`): *maps*, in the same four \
-         maps (`{}`); *one*, in one focused map (`{}`), whose receivers need not find their map. Medians of {turns} ratios, one of each \
-         turn of the tables below; below 1 `smra-plus` is cheaper.\n",
+         maps (`{}`); *one*, in one focused map (`{}`), whose receivers need not find their map. Medians of the ratios of \
+         each turn of the tables below, where these are neighbours; below 1 `smra-plus` is cheaper.\n",
         NINE_TAPS[0], NINE_TAPS[1]
     );
     let mut sizes: Vec<u32> = measured.iter().flat_map(|set| &set.nine_taps).map(|ratio| ratio.size).collect();

@@ -25,7 +25,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         name: "excess",
         axis: "mean absolute error above that of a perfect hard edge, %",
         of: |row| 100.0 * row.excess(),
-        linear: Some(0.05),
+        linear: Some(0.2),
     },
     Figure {
         name: "wrong",

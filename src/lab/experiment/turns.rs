@@ -99,3 +99,42 @@ fn of_gpu(turns: Turns, frame: ShadowFrame, fit_ns: f64, bytes: u64) -> Timed {
     let mask = turns.image.mask;
     Timed { shot: Shot { mask, frame, fit_ns, casters_ms, filter_ms, receivers_ms, bytes }, passes }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::comparison::Assignment;
+    use crate::lab::experiment::BackendChoice;
+    use crate::lab::subject::Setting;
+    use crate::{Bias, Remix, techniques};
+
+    #[test]
+    fn turns_draw_what_single_shots_draw() {
+        let mut assignment = Assignment::of_scene("sparse-city").unwrap();
+        let case = assignment.cases.first_mut().unwrap();
+        case.viewport = [80, 60];
+        let broken = Remix {
+            bias: Bias::Manual { depth_world: f32::NAN, slope_texels: 0.0, normal_texels: 0.0 },
+            ..techniques::fsm()
+        };
+        let all = [techniques::fsm(), broken, techniques::cascades(), techniques::vsm()];
+        for choice in [BackendChoice::Cpu, BackendChoice::Auto] {
+            let (mut backend, _) = Backend::open(choice).unwrap();
+            let all = all.map(|remix| backend.adapted(&remix));
+            let mut studio = Studio::new(&mut backend, &assignment.subject, Setting::of(&assignment.cases[0])).unwrap();
+            let timed = studio.shoot_in_turns(&all.each_ref().map(|remix| remix as &dyn ShadowTechnique), 128, 3);
+            assert_eq!(timed.len(), all.len());
+            for (index, (timed, remix)) in timed.iter().zip(&all).enumerate() {
+                let (Ok(timed), 0 | 2 | 3) = (timed, index) else {
+                    // The one that is refused stays in its place, with its error.
+                    assert!(index == 1 && matches!(timed, Err(RunError::Fit(_))), "{index}: {timed:?}");
+                    continue;
+                };
+                let alone = studio.shoot(remix, 128, 1).unwrap();
+                assert_eq!((&timed.shot.mask, &timed.shot.frame), (&alone.mask, &alone.frame), "{index}");
+                assert_eq!((timed.passes.len(), timed.shot.bytes), (3, alone.bytes));
+                assert!(timed.passes.iter().all(|[casters, _, receivers]| *casters > 0.0 && *receivers > 0.0));
+            }
+        }
+    }
+}
