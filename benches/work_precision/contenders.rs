@@ -9,8 +9,11 @@ pub(crate) const SIZES: [u32; 3] = [512, 1024, 2048];
 /// Sides at either end, for those of [`FEW`]: all of them there would take as long again as everything else.
 const ENDS: [u32; 2] = [256, 4096];
 
+/// Maps from this side on take most of the time: they get fewer turns, texels.
+pub(crate) const LARGE: u32 = 2048;
+
 /// Who is drawn at every size.
-const FEW: [&str; 3] = ["fsm", "cascades", "smra-plus"];
+pub(crate) const FEW: [&str; 3] = ["fsm", "cascades", "smra-plus"];
 
 /// The receiver that others are measured against: nine bilinear comparisons.
 pub(crate) const NINE_TAPS: [&str; 2] = ["cascades pcf5x5", "fsm pcf5x5"];
@@ -57,7 +60,8 @@ pub(crate) fn sizes(quick: bool) -> Vec<u32> {
     if quick { SIZES[..2].to_vec() } else { [&ENDS[..1], &SIZES, &ENDS[1..]].concat() }
 }
 
-/// Whether a contender is drawn at a size.
+/// Whether a contender is drawn at a size. Sums of large maps take seconds on a software adapter.
 pub(crate) fn takes_part(contender: &Contender, size: u32) -> bool {
-    SIZES.contains(&size) || FEW.contains(&contender.name.as_str())
+    let summed = matches!(contender.remix.encoding, Encoding::Moments(prefilter) if prefilter.moments.is_summed());
+    FEW.contains(&contender.name.as_str()) || SIZES.contains(&size) && !(summed && size >= LARGE)
 }

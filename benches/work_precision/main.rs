@@ -33,7 +33,7 @@ use measure::{Effort, Measured, Session, sets};
 const TURNS: [u32; 2] = [5, 3];
 
 /// Turns of a race.
-const RACE_TURNS: u32 = 31;
+const RACE_TURNS: u32 = 21;
 
 /// Both with `--quick`.
 const QUICK_TURNS: ([u32; 2], u32) = ([3, 3], 7);

@@ -13,16 +13,13 @@ use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::{Truth, TruthCache};
 use antumbra::{ShadowTechnique, techniques};
 
-use crate::contenders::{Contender, NINE_TAPS, takes_part};
+use crate::contenders::{Contender, LARGE, NINE_TAPS, takes_part};
 
 /// A run this wrong drew something else than shadows: it is reported as failed, not timed as if it had worked.
 pub(crate) const WORST_WRONG: f64 = 0.25;
 
 /// Side of the map of a race, texels: the passes' ratios hardly change with it.
 pub(crate) const RACE_SIZE: u32 = 1024;
-
-/// Maps from this side on take most of the time: they get fewer turns, texels.
-pub(crate) const LARGE: u32 = 2048;
 
 /// How much is measured.
 #[derive(Clone, Debug)]

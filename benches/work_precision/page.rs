@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use antumbra::lab::bias_matrix::Picture;
 use antumbra::lab::report::Row;
 
-use crate::measure::{Effort, LARGE, Measured, WORST_WRONG};
+use crate::contenders::{FEW, LARGE};
+use crate::measure::{Effort, Measured, WORST_WRONG};
 use crate::summary::{Cell, FIGURES};
 use crate::{bias, plots, races};
 
@@ -61,7 +62,9 @@ fn words(text: &mut String, effort: &Effort) {
         "## Techniques and encodings\n\n\
          Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself, four taps over the pixel are \
          `smra-plus`), and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
-         size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in alternation. Medians over the cases of a set:\n\n\
+         size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in \
+         alternation. Summed-area tables are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
+         Medians over the cases of a set:\n\n\
          - *excess*: mean absolute error against the area truth above that of a perfect hard edge, %; negative where filtering beats it;\n\
          - *wrong*: pixels more than half off the centre truth, %; *leak*: those of them that are lit, further than 2 px from edges, %;\n\
          - *ms*: time of a frame (fit, casters, filter, receivers), median over turns, ± half the distance between the quartiles;\n\
@@ -70,6 +73,7 @@ fn words(text: &mut String, effort: &Effort) {
          pixels or more counts as failed, and a failed run as worse than all others.\n",
         effort.turns[0],
         effort.turns[1],
+        FEW.map(|name| format!("`{name}`")).join(", "),
         100.0 * WORST_WRONG
     );
 }

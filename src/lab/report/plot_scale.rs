@@ -51,7 +51,7 @@ impl Scale {
     }
 
     /// Of values of either sign, each placed at exp(asinh(value / linear)); ticks at zero, and at 1, 2 and 5 times the
-    /// powers of ten from twice `linear` on.
+    /// powers of ten from `linear` on.
     pub(super) fn signed(range: Range<f64>, linear: f64) -> Self {
         let place = |value: f64| (value / linear).asinh().exp();
         let most = [range.start, range.end].map(|end| (end.ln().sinh() * linear).abs()).into_iter().fold(0.0, f64::max);
@@ -62,9 +62,10 @@ impl Scale {
             let signed = sizes.filter(move |size| *size >= least).flat_map(|size| [-size, size]);
             signed.filter(|value| range.contains(&place(*value))).collect::<Vec<_>>()
         };
-        let mut labelled = sizes(&[1, 2, 5], 2.0 * linear * (1.0 - 1e-9));
+        let least = linear * (1.0 - 1e-9);
+        let mut labelled = sizes(&[1, 2, 5], least);
         labelled.push(0.0);
-        let faint = sizes(&[1, 2, 3, 4, 5, 6, 7, 8, 9], linear * (1.0 - 1e-9)).into_iter().map(place).collect();
+        let faint = sizes(&[1, 2, 3, 4, 5, 6, 7, 8, 9], least).into_iter().map(place).collect();
         let words = labelled.iter().map(|value| (place(*value), signed_label(*value))).collect();
         let labelled = labelled.into_iter().map(place).filter(|at| range.contains(at)).collect();
         Self { range: range.clone(), ticks: Ticks { labelled, faint }, words }
