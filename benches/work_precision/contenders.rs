@@ -26,7 +26,7 @@ pub(crate) struct Contender {
     pub(crate) remix: Remix,
 }
 
-/// All of them, in the formats that the adapter has. Those whose receivers are compared follow one another.
+/// All of them, in the formats that the adapter has.
 pub(crate) fn contenders(backend: &Backend) -> Vec<Contender> {
     let named = techniques::NAMED.iter().map(|(name, technique)| ((*name).to_owned(), technique()));
     // The filters of depth maps that no named technique has.

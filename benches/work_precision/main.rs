@@ -32,11 +32,14 @@ use measure::{Effort, Measured, Session, sets};
 /// on two cores.
 const TURNS: [u32; 2] = [5, 3];
 
+/// Turns of the receivers beside nine comparisons, and those with large maps.
+const NINE_TURNS: [u32; 2] = [11, 5];
+
 /// Turns of a race.
 const RACE_TURNS: u32 = 21;
 
-/// Both with `--quick`.
-const QUICK_TURNS: ([u32; 2], u32) = ([3, 3], 7);
+/// All of them with `--quick`.
+const QUICK_TURNS: u32 = 3;
 
 /// Columns of the table after those of every table: quartiles of `total_ms` over the turns.
 const MORE: [&str; 2] = ["total_q1_ms", "total_q3_ms"];
@@ -63,8 +66,12 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
     }
     println!("{} ({})", backend.adapter(), backend.name());
     let contenders = contenders(&backend);
-    let (turns, race_turns) = if quick { QUICK_TURNS } else { (TURNS, RACE_TURNS) };
-    let effort = Effort { sizes: sizes(quick), turns, race_turns };
+    let effort = if quick {
+        let turns = [QUICK_TURNS; 2];
+        Effort { sizes: sizes(quick), turns, nine_turns: turns, race_turns: QUICK_TURNS }
+    } else {
+        Effort { sizes: sizes(quick), turns: TURNS, nine_turns: NINE_TURNS, race_turns: RACE_TURNS }
+    };
     let mut sets = sets(only, if quick { 1 } else { usize::MAX })?;
     if quick {
         let cases = sets.iter_mut().flat_map(|(_, assignments)| assignments).flat_map(|of| &mut of.cases);

@@ -13,7 +13,7 @@ use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::{Truth, TruthCache};
 use antumbra::{ShadowTechnique, techniques};
 
-use crate::contenders::{Contender, LARGE, NINE_TAPS, takes_part};
+use crate::contenders::{Contender, LARGE, NINE_TAPS, SIZES, takes_part};
 
 /// A run this wrong drew something else than shadows: it is reported as failed, not timed as if it had worked.
 pub(crate) const WORST_WRONG: f64 = 0.25;
@@ -27,6 +27,8 @@ pub(crate) struct Effort {
     pub(crate) sizes: Vec<u32>,
     /// Turns of the contenders, and those of maps of [`LARGE`] texels and more.
     pub(crate) turns: [u32; 2],
+    /// Turns of the comparison with nine comparisons, likewise.
+    pub(crate) nine_turns: [u32; 2],
     /// Turns of a race: its medians are ratios of neighbours in time.
     pub(crate) race_turns: u32,
 }
@@ -35,6 +37,25 @@ impl Effort {
     /// Turns at a size.
     fn turns(&self, size: u32) -> u32 {
         self.turns[usize::from(size >= LARGE)]
+    }
+}
+
+impl Effort {
+    /// Turn by turn, and apart from all others, filter and receivers of `smra-plus` over those with nine comparisons;
+    /// medians, NaN where one of them failed.
+    fn nine_taps(&self, studio: &mut Studio, contenders: &[Contender], size: u32) -> [f64; 2] {
+        let [of_cascades, of_one] = NINE_TAPS;
+        // Each beside its yardstick.
+        let names = [of_cascades, "smra-plus", of_one];
+        let found = names.map(|name| contenders.iter().find(|contender| contender.name == name));
+        let drawn: Vec<&dyn ShadowTechnique> = found.iter().flatten().map(|contender| &contender.remix as _).collect();
+        let timed = studio.shoot_in_turns(&drawn, size, self.nine_turns[usize::from(size >= LARGE)]);
+        let [Ok(of_cascades), Ok(ours), Ok(of_one)] = &timed[..] else { return [f64::NAN; 2] };
+        let ms = |[_, filter, receivers]: &[f64; 3]| filter + receivers;
+        [of_cascades, of_one].map(|theirs| {
+            let turns = ours.passes.iter().zip(&theirs.passes);
+            quantile(&turns.map(|(ours, theirs)| ms(ours) / ms(theirs)).collect::<Vec<_>>(), 0.5)
+        })
     }
 }
 
@@ -136,7 +157,11 @@ impl Session<'_> {
         let present: Vec<&Contender> = self.contenders.iter().filter(|contender| takes_part(contender, size)).collect();
         let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
         let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns(size));
-        let ratios = nine_taps(&present, &timed, &case.name, size);
+        let ratios = SIZES.contains(&size).then(|| NineTaps {
+            case: case.name.clone(),
+            size,
+            ratios: self.effort.nine_taps(&mut studio, self.contenders, size),
+        });
         let row = |contender: &Contender| {
             let [split, warp, encoding] = stage_names(&contender.remix);
             let (scene, case, technique) = (assignment.scene.clone(), case.name.clone(), contender.name.clone());
@@ -173,20 +198,4 @@ fn record(mut row: Row, timed: Result<Timed, RunError>, truth: &Truth) -> Record
     let totals: Vec<f64> = timed.passes.iter().map(|turn| 1e-6 * row.fit_ns + turn.iter().sum::<f64>()).collect();
     row.total_ms = quantile(&totals, 0.5);
     Record { row, quartiles: [0.25, 0.75].map(|share| quantile(&totals, share)) }
-}
-
-/// Turn by turn, filter and receivers of `smra-plus` over those of nine comparisons.
-fn nine_taps(present: &[&Contender], timed: &[Result<Timed, RunError>], case: &str, size: u32) -> Option<NineTaps> {
-    let turns = |name: &str| -> Option<Vec<f64>> {
-        let at = present.iter().position(|contender| contender.name == name)?;
-        let passes = &timed[at].as_ref().ok()?.passes;
-        Some(passes.iter().map(|[_, filter, receivers]| filter + receivers).collect())
-    };
-    let ours = turns("smra-plus")?;
-    let [of_cascades, of_one] = NINE_TAPS.map(turns);
-    let ratio = |theirs: Vec<f64>| {
-        let ratios: Vec<f64> = ours.iter().zip(theirs).map(|(ours, theirs)| ours / theirs).collect();
-        quantile(&ratios, 0.5)
-    };
-    Some(NineTaps { case: case.to_owned(), size, ratios: [ratio(of_cascades?), ratio(of_one?)] })
 }

@@ -44,7 +44,7 @@ pub(crate) fn page(
     }
     text.push('\n');
     races::section(&mut text, measured, effort.race_turns);
-    races::nine_taps(&mut text, measured);
+    races::nine_taps(&mut text, measured, effort.nine_turns);
     words(&mut text, effort);
     for (set, cells) in measured.iter().zip(cells) {
         section(&mut text, set, cells);

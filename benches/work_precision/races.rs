@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use antumbra::lab::gpu::Race;
 
-use crate::contenders::{NINE_TAPS, SIZES};
+use crate::contenders::{LARGE, NINE_TAPS};
 use crate::measure::{Measured, NineTaps, RACE_SIZE};
 use crate::summary::median;
 
@@ -50,17 +50,16 @@ pub(crate) fn section(text: &mut String, measured: &[Measured], turns: u32) {
 }
 
 /// The receivers of `smra-plus` beside receivers of nine comparisons.
-pub(crate) fn nine_taps(text: &mut String, measured: &[Measured]) {
+pub(crate) fn nine_taps(text: &mut String, measured: &[Measured], turns: [u32; 2]) {
     let _ = writeln!(
         text,
         "## Receivers beside nine comparisons\n\n\
          Filter and receivers of `smra-plus` over receivers with a box of nine bilinear comparisons (`Pcf::Box5x5`): *maps*, in the same four \
-         maps (`{}`); *one*, in one focused map (`{}`), whose receivers need not find their map. Medians of the ratios of \
-         each turn of the tables below, where these are neighbours; below 1 `smra-plus` is cheaper.\n",
-        NINE_TAPS[0], NINE_TAPS[1]
+         maps (`{}`); *one*, in one focused map (`{}`), whose receivers need not find their map. The three are \
+         drawn in turns, apart from all others: medians of {} ratios, each of neighbours in time (from {LARGE} texels on {}); below 1 `smra-plus` is cheaper.\n",
+        NINE_TAPS[0], NINE_TAPS[1], turns[0], turns[1]
     );
     let mut sizes: Vec<u32> = measured.iter().flat_map(|set| &set.nine_taps).map(|ratio| ratio.size).collect();
-    sizes.retain(|size| SIZES.contains(size));
     sizes.sort_unstable();
     sizes.dedup();
     let headings: Vec<String> = sizes.iter().map(|size| format!("{size}: maps | one")).collect();
