@@ -60,8 +60,14 @@ pub(crate) fn sizes(quick: bool) -> Vec<u32> {
     if quick { SIZES[..2].to_vec() } else { [&ENDS[..1], &SIZES, &ENDS[1..]].concat() }
 }
 
-/// Whether a contender is drawn at a size. Sums of large maps take seconds on a software adapter.
+/// Whether a contender is drawn at a size. Sums and series of large maps take
+/// seconds on a software adapter.
 pub(crate) fn takes_part(contender: &Contender, size: u32) -> bool {
-    let summed = matches!(contender.remix.encoding, Encoding::Moments(prefilter) if prefilter.moments.is_summed());
-    FEW.contains(&contender.name.as_str()) || SIZES.contains(&size) && !(summed && size >= LARGE)
+    let slow = match contender.remix.encoding {
+        Encoding::Moments(Prefilter { moments, .. }) => {
+            moments.is_summed() || moments.kind() == MomentKind::Convolution
+        }
+        _ => false,
+    };
+    FEW.contains(&contender.name.as_str()) || SIZES.contains(&size) && !(slow && size >= LARGE)
 }

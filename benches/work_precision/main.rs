@@ -33,7 +33,7 @@ use measure::{Effort, Measured, Session, sets};
 const TURNS: [u32; 2] = [5, 3];
 
 /// Turns of the receivers beside nine comparisons, and those with large maps.
-const NINE_TURNS: [u32; 2] = [11, 5];
+const NINE_TURNS: [u32; 2] = [9, 5];
 
 /// Turns of a race.
 const RACE_TURNS: u32 = 21;

@@ -63,7 +63,7 @@ fn words(text: &mut String, effort: &Effort) {
          Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself, four taps over the pixel are \
          `smra-plus`), and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
          size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in \
-         alternation. Summed-area tables are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
+         alternation. Summed-area tables and convolution maps are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
          Medians over the cases of a set:\n\n\
          - *excess*: mean absolute error against the area truth above that of a perfect hard edge, %; negative where filtering beats it;\n\
          - *wrong*: pixels more than half off the centre truth, %; *leak*: those of them that are lit, further than 2 px from edges, %;\n\
