@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use antumbra::lab::bias_matrix::{ACNE, Cell, Goal, Map, Picture, SIDE, Way};
 use antumbra::lab::metrics::detachment::STRIP_PX;
 use antumbra::lab::report::{Diagram, Layer, Look, Spot, diagram_svg};
 
 use crate::gz::{self, INT_MAX, REPORT, SECOND_CAMERA, Step, Swept};
-use crate::matrix::{ACNE, Cell, Goal, Map, Picture, SIDE, Way};
 
 const HEAD: &str = "# Bias: self-shadowing and detachment, measured
 

@@ -146,7 +146,7 @@ pub(crate) fn plots(records: &[Record]) -> [(&'static str, String); 2] {
         names(records).into_iter().enumerate().map(curve).collect()
     };
     let time = |these: &[&Record]| average(these, Record::total_ms);
-    let axis = |name: &str| Axis { name: name.to_owned(), floor: None };
+    let axis = |name: &str| Axis { name: name.to_owned(), ..Axis::default() };
     let by_width = series(&|width, _| f64::from(width), &time);
     let mut by_distance = series(&|_, these| average(these, |record| record.distance), &time);
     by_distance.retain(|series| series.name != PCF);
@@ -156,7 +156,11 @@ pub(crate) fn plots(records: &[Record]) -> [(&'static str, String); 2] {
             error_time_svg(
                 "Time by width",
                 &by_width,
-                &Axes { x: axis("width of the filter, texels"), y: axis("filter and receivers, ms") },
+                &Axes {
+                    x: axis("width of the filter, texels"),
+                    y: axis("filter and receivers, ms"),
+                    ..Axes::default()
+                },
             ),
         ),
         (
@@ -164,7 +168,11 @@ pub(crate) fn plots(records: &[Record]) -> [(&'static str, String); 2] {
             error_time_svg(
                 "Distance from PCF of the same width, and time",
                 &by_distance,
-                &Axes { x: axis("root mean square distance from PCF's picture"), y: axis("filter and receivers, ms") },
+                &Axes {
+                    x: axis("root mean square distance from PCF's picture"),
+                    y: axis("filter and receivers, ms"),
+                    ..Axes::default()
+                },
             ),
         ),
     ]

@@ -1,5 +1,7 @@
 //! One technique, one setting, one map size: drawn on either backend, timed, and compared with the truth.
 
+mod turns;
+
 use std::collections::HashMap;
 use std::fmt;
 use std::time::Instant;
@@ -21,6 +23,9 @@ use crate::scene::MapBudget;
 use crate::split::{Scheme, Split};
 use crate::technique::{FitInput, ShadowTechnique};
 use crate::warp::Warp;
+
+use turns::Fitted;
+pub use turns::Timed;
 
 /// Which renderer is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -204,21 +209,16 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// The technique refused its input, or the renderer failed.
     pub fn shoot(&mut self, technique: &dyn ShadowTechnique, side: u32, repetitions: u32) -> Result<Shot, RunError> {
-        let input = self.setting.input(self.subject, &self.seen, technique.wgsl_key(), side);
-        let map = MapBudget { layers: self.layers.unwrap_or(input.map.layers), ..input.map };
-        let input = FitInput { map, ..input };
-        let frame = technique.fit(&input).map_err(RunError::Fit)?;
-        let fit_ns = median_fit_ns(|| technique.fit(&input).is_ok());
-        match (&mut *self.backend, &self.scene) {
+        let Fitted { frame, fit_ns, maps } = self.fitted(technique, side)?;
+        match (&*self.backend, &self.scene) {
             (Backend::Gpu(gpu, renderers), Prepared::Gpu(scene)) => {
-                let renderer = renderers.entry(frame.wgsl).or_insert_with(|| Renderer::new(gpu, frame.wgsl));
-                let descriptor = ShadowMapsDescriptor { label: Some("antumbra lab"), key: frame.wgsl, map: input.map };
-                let failed = |error: &dyn fmt::Display| RunError::Render(error.to_string());
-                let maps = ShadowMaps::new(gpu.device(), &descriptor).map_err(|error| failed(&error))?;
+                let (Some(renderer), Some(maps)) = (renderers.get(&frame.wgsl), maps) else {
+                    return Err(RunError::Render("no maps were made".to_owned()));
+                };
                 let options = RenderOptions { repetitions };
                 let image = renderer
                     .render(gpu, scene, &self.setting.camera, &frame, &maps, &options)
-                    .map_err(|error| failed(&error))?;
+                    .map_err(|error| RunError::Render(error.to_string()))?;
                 let times = image.timings;
                 let (casters_ms, filter_ms, receivers_ms) = (times.casters_ms, times.filter_ms, times.receivers_ms);
                 Ok(Shot { mask: image.mask, frame, fit_ns, casters_ms, filter_ms, receivers_ms, bytes: maps.bytes() })

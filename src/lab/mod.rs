@@ -1,4 +1,5 @@
 //! The laboratory: scenes, ray-traced truth, metrics, renderers and reports (feature `lab`).
+pub mod bias_matrix;
 pub mod bvh;
 pub mod case;
 pub mod cli;

@@ -1,4 +1,4 @@
-//! Statistics of measurements: quantiles, geometric means, rank correlation. NaN where there is nothing to go by.
+//! Statistics of measurements: quantiles, geometric means, rank correlation, Pareto fronts. NaN where there is nothing to go by.
 
 /// The mean of numbers.
 #[must_use]
@@ -37,6 +37,16 @@ pub fn rank_correlation(pairs: &[[f64; 2]]) -> f64 {
     product(&a, mean_a, &b, mean_b) / (product(&a, mean_a, &a, mean_a) * product(&b, mean_b, &b, mean_b)).sqrt()
 }
 
+/// Which points [x, y] no other one beats: none is as small in both and smaller in one. NaN is never among them.
+#[must_use]
+pub fn pareto_front(points: &[[f64; 2]]) -> Vec<bool> {
+    let figures = |point: &[f64; 2]| !point.iter().any(|value| value.is_nan());
+    let beats = |other: &[f64; 2], point: &[f64; 2]| {
+        figures(other) && other[0] <= point[0] && other[1] <= point[1] && other != point
+    };
+    points.iter().map(|point| figures(point) && !points.iter().any(|other| beats(other, point))).collect()
+}
+
 /// The rank of every value; equal ones share their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let rank = |value: &f64| {
@@ -59,6 +69,15 @@ mod tests {
         assert_eq!(quantile(&[3.0, 1.0, 2.0], 1.0), 3.0);
         assert_eq!(quantile(&[7.0], 0.3), 7.0);
         assert!(quantile(&[], 0.5).is_nan() && mean(&[]).is_nan() && geometric_mean(&[]).is_nan());
+    }
+
+    #[test]
+    fn nobody_beats_a_front() {
+        let points = [[1.0, 5.0], [2.0, 3.0], [2.0, 4.0], [4.0, 3.0], [5.0, 1.0], [f64::NAN, 0.0], [-1.0, 9.0]];
+        assert_eq!(pareto_front(&points), [true, true, false, false, true, false, true]);
+        // Equal ones do not beat each other.
+        assert_eq!(pareto_front(&[[1.0, 1.0], [1.0, 1.0]]), [true, true]);
+        assert!(pareto_front(&[]).is_empty());
     }
 
     #[test]

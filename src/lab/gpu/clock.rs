@@ -26,6 +26,16 @@ pub struct PassTimes {
     pub clock: Clock,
 }
 
+impl PassTimes {
+    /// Each pass's median over repetitions; NaN of none.
+    #[must_use]
+    pub fn median(times: &[Self], clock: Clock) -> Self {
+        let of = |pass: fn(&Self) -> f64| median(&mut times.iter().map(pass).collect::<Vec<_>>());
+        let (casters_ms, filter_ms) = (of(|times| times.casters_ms), of(|times| times.filter_ms));
+        Self { casters_ms, filter_ms, receivers_ms: of(|times| times.receivers_ms), clock }
+    }
+}
+
 /// Times submissions one by one.
 pub(super) struct Stopwatch<'a> {
     gpu: &'a Gpu,

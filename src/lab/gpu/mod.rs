@@ -11,6 +11,7 @@ mod projection;
 mod readback;
 mod render;
 mod scene;
+mod turns;
 
 use core::fmt;
 
@@ -23,6 +24,7 @@ pub use clock::{Clock, PassTimes};
 pub use readback::{read_depth, read_moments, read_sums};
 pub use render::{GpuImage, RenderOptions, Renderer};
 pub use scene::GpuScene;
+pub use turns::{Entrant, Turns, draw_in_turns};
 
 /// A device of the laboratory's own, for drawing without a window.
 #[derive(Debug)]

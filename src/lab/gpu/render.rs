@@ -2,7 +2,7 @@
 
 use glam::{DVec3, UVec2};
 
-use super::clock::{PassTimes, Stamps, Stopwatch, median};
+use super::clock::{PassTimes, Stamps, Stopwatch};
 use super::pipelines::{self, Pair};
 use super::projection::CameraUniforms;
 use super::readback::read_layer;
@@ -106,23 +106,8 @@ impl Renderer {
         let stopwatch = Stopwatch::new(gpu);
         stopwatch.time(|encoder, _| shot.depth_pass(encoder))?;
         // Draw the passes that are timed, in turns.
-        let filtered = self.key.texel != Texel::Depth && !frame.views.is_empty();
-        let (mut casters, mut filters, mut receivers) = (Vec::new(), Vec::new(), Vec::new());
-        for _ in 0..options.repetitions.max(1) {
-            casters.push(stopwatch.time(|encoder, stamps| shot.caster_passes(encoder, stamps))?);
-            if filtered {
-                filters.push(stopwatch.time(|encoder, stamps| shot.filter_passes(encoder, stamps))?);
-            }
-            receivers.push(stopwatch.time(|encoder, stamps| {
-                shot.receiver_pass(encoder, stamps, &self.receivers, maps.bind_group());
-            })?);
-        }
-        let timings = PassTimes {
-            casters_ms: if frame.views.is_empty() { 0.0 } else { median(&mut casters) },
-            filter_ms: if filtered { median(&mut filters) } else { 0.0 },
-            receivers_ms: median(&mut receivers),
-            clock: stopwatch.clock(),
-        };
+        let times = (0..options.repetitions.max(1)).map(|_| shot.turn(&stopwatch)).collect::<Result<Vec<_>, _>>()?;
+        let timings = PassTimes::median(&times, stopwatch.clock());
         Ok(GpuImage { size: camera.viewport, mask: shot.read_mask()?, timings })
     }
 }
@@ -184,6 +169,21 @@ impl<'a> Shot<'a> {
     /// The views of its frame.
     pub(super) fn views(&self) -> &'a [ShadowView] {
         &self.frame.views
+    }
+
+    /// Draws every pass once, and times each.
+    pub(super) fn turn(&self, stopwatch: &Stopwatch) -> Result<PassTimes, GpuFailure> {
+        let any = !self.frame.views.is_empty();
+        let casters = stopwatch.time(|encoder, stamps| self.caster_passes(encoder, stamps))?;
+        let filter_ms = if any && self.renderer.key.texel != Texel::Depth {
+            stopwatch.time(|encoder, stamps| self.filter_passes(encoder, stamps))?
+        } else {
+            0.0
+        };
+        let (pair, group) = (&self.renderer.receivers, self.maps.bind_group());
+        let receivers_ms = stopwatch.time(|encoder, stamps| self.receiver_pass(encoder, stamps, pair, group))?;
+        let casters_ms = if any { casters } else { 0.0 };
+        Ok(PassTimes { casters_ms, filter_ms, receivers_ms, clock: stopwatch.clock() })
     }
 
     /// Draws the casters of every view.

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
+use serde::Serialize;
+
 use super::row::Row;
 use super::{ReportError, column, stage};
 
@@ -29,11 +31,37 @@ pub fn write_csv(path: &Path, meta: &[(&str, &str)], rows: &[Row]) -> Result<(),
     stage::publish([staged])
 }
 
+/// The same with more columns at the end, by name.
+///
+/// # Errors
+/// As [`write_csv`], also when a row does not bring as many figures as there are names.
+pub fn write_wide_csv(
+    path: &Path,
+    meta: &[(&str, &str)],
+    more: &[&str],
+    rows: &[(Row, Vec<f64>)],
+) -> Result<(), ReportError> {
+    let mut columns: Vec<&str> = header().collect();
+    columns.extend(more);
+    let staged = stage::write(path, |sink| write_records(sink, meta, &columns, rows))?;
+    stage::publish([staged])
+}
+
 /// Writes comments, header and rows.
 pub(super) fn write_rows<'a, W: Write>(
-    mut sink: W,
+    sink: W,
     meta: &[(&str, &str)],
     rows: impl IntoIterator<Item = &'a Row>,
+) -> io::Result<()> {
+    write_records(sink, meta, &header().collect::<Vec<_>>(), rows)
+}
+
+/// Writes comments, header and what a line is made of.
+fn write_records<W: Write>(
+    mut sink: W,
+    meta: &[(&str, &str)],
+    header: &[&str],
+    rows: impl IntoIterator<Item = impl Serialize>,
 ) -> io::Result<()> {
     // A comment is one line, whatever the value holds.
     for (key, value) in meta {
@@ -41,7 +69,7 @@ pub(super) fn write_rows<'a, W: Write>(
     }
     // The header stands even above no rows.
     let mut table = csv::WriterBuilder::new().comment(Some(COMMENT)).has_headers(false).from_writer(sink);
-    table.write_record(header())?;
+    table.write_record(header)?;
     for row in rows {
         table.serialize(row)?;
     }
@@ -115,6 +143,21 @@ mod tests {
         assert_eq!(back[0].left_out, awkward().left_out);
         assert_eq!((back[0].mae.to_bits(), back[0].rmse.is_nan()), (0.125_f64.to_bits(), true));
         assert!(back[1].failed() && back[1].left_out.is_empty());
+    }
+
+    #[test]
+    fn more_columns_come_last_and_are_read_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("wide.csv");
+        let rows = [(awkward(), vec![1.5, 2.5]), (Row::default(), vec![f64::NAN, 0.0])];
+        write_wide_csv(&path, &[], &["low", "high"], &rows).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.lines().next().unwrap().ends_with(",left_out,low,high"), "{text}");
+        assert!(text.contains(",1.5,2.5\n") && text.ends_with(",NaN,0.0\n"), "{text}");
+        assert_eq!(read_csv(&path).unwrap().len(), 2);
+        // A row that is too short spoils the table: nothing is written.
+        let short = folder.path().join("short.csv");
+        assert!(write_wide_csv(&short, &[], &["low", "high"], &[(awkward(), vec![1.5])]).is_err() && !short.exists());
     }
 
     #[test]

@@ -118,6 +118,10 @@ fn svg(plot: &Plot, rows: &[Row], styles: &[&str]) -> String {
     // Mark what a perfect lookup with one sample would score.
     let floor = rows.iter().map(|row| row.floor_mae).find(|floor| floor.is_finite()).filter(|_| plot.has_floor);
     let x_floor = floor.map(|value| Floor { value, label: "floor: one perfect sample per pixel".into() });
-    let x = Axis { name: plot.x_name.into(), floor: x_floor };
-    error_time_svg(plot.title, &series, &Axes { x, y: Axis { name: plot.y_name.into(), floor: None } })
+    let x = Axis { name: plot.x_name.into(), floor: x_floor, linear: None };
+    error_time_svg(
+        plot.title,
+        &series,
+        &Axes { x, y: Axis { name: plot.y_name.into(), ..Axis::default() }, front: false },
+    )
 }

@@ -13,6 +13,7 @@ mod html;
 mod markdown;
 mod overview;
 mod plot;
+mod plot_front;
 mod plot_marks;
 mod plot_scale;
 mod row;
@@ -24,7 +25,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 pub use column::{COLUMNS, Cell, Column};
-pub use csv::{header, read_csv, write_csv};
+pub use csv::{header, read_csv, write_csv, write_wide_csv};
 pub use diagram::{Diagram, Layer, Look, Spot, Tick, diagram_svg};
 pub use html::write_html;
 pub use markdown::markdown_table;

@@ -13,6 +13,7 @@ use plotters::prelude::{ChartBuilder, IntoDrawingArea, RGBColor, SVGBackend};
 use plotters::style::{Color, IntoFont};
 
 use super::html::Escaped;
+use super::plot_front;
 use super::plot_marks::{self, Mark};
 use super::plot_scale::{self, Scale, Ticks};
 
@@ -68,15 +69,31 @@ pub struct Axes {
     pub x: Axis,
     /// Upright axis: the time.
     pub y: Axis,
+    /// Whether the Pareto front is marked, the points that no other one beats in both values; curves that are nowhere
+    /// on it step back.
+    pub front: bool,
 }
 
-/// One logarithmic axis.
+/// One axis, logarithmic.
 #[derive(Clone, Debug, Default)]
 pub struct Axis {
     /// Metric and unit.
     pub name: String,
     /// A value to mark with a line across the plot.
     pub floor: Option<Floor>,
+    /// For values of either sign: linear up to about this distance from zero (> 0), logarithmic beyond it on both sides.
+    pub linear: Option<f64>,
+}
+
+impl Axis {
+    /// A number whose logarithm is where a value stands; not positive where there is no place for it.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        self.linear.map_or(value, |linear| (value / linear).asinh().exp())
+    }
+
+    fn scale(&self, range: &Range<f64>) -> Scale {
+        self.linear.map_or_else(|| Scale::over(range.clone()), |linear| Scale::signed(range.clone(), linear))
+    }
 }
 
 /// A marked value of an axis: what no unfiltered technique can pass, or a budget.
@@ -114,12 +131,12 @@ pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
     // Find the ranges of the values that can be drawn.
     let drawable = |point: &&PlotPoint| point.x.is_finite() && point.y.is_finite();
     let points = || series.iter().flat_map(|s| &s.points).filter(drawable);
-    let floor = |axis: &Axis| axis.floor.as_ref().map(|floor| floor.value);
-    let x_range = plot_scale::range(points().map(|p| p.x).chain(floor(&axes.x)));
-    let y_range = plot_scale::range(points().map(|p| p.y).chain(floor(&axes.y)));
+    let floor = |axis: &Axis| axis.floor.as_ref().map(|floor| axis.place(floor.value));
+    let x_range = plot_scale::range(points().map(|p| axes.x.place(p.x)).chain(floor(&axes.x)));
+    let y_range = plot_scale::range(points().map(|p| axes.y.place(p.y)).chain(floor(&axes.y)));
     // Let the plotting crate draw the axes and place every point.
     let empty = points().next().is_none();
-    let (mut body, frame, marks) = match draw_axes(series, axes, &x_range, &y_range, empty) {
+    let (mut body, frame, mut marks) = match draw_axes(series, axes, &x_range, &y_range, empty) {
         Ok(drawn) => drawn,
         Err(error) => return document(title, &plot_marks::apology(&error), f64::from(AXES_HEIGHT)),
     };
@@ -128,9 +145,13 @@ pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
     if empty {
         plot_marks::no_data(&mut body, &frame);
     }
+    if axes.front {
+        plot_front::mark(&mut marks);
+        plot_front::draw(&mut body, &marks);
+    }
     let taken = plot_marks::floors(&mut body, &marks, axes, &frame);
     let bottom = plot_marks::curves(&mut body, series, &marks, &frame, taken, f64::from(AXES_HEIGHT));
-    let height = plot_marks::notes(&mut body, series, f64::from(WIDTH), bottom);
+    let height = plot_marks::notes(&mut body, series, axes, f64::from(WIDTH), bottom);
     document(title, &body, height)
 }
 
@@ -138,6 +159,8 @@ pub fn error_time_svg(title: &str, series: &[Series], axes: &Axes) -> String {
 pub(super) struct Marks {
     /// Points of each series that can be drawn.
     pub(super) series: Vec<Vec<Mark>>,
+    /// Whether there is a front for them to be on.
+    pub(super) front: bool,
     /// Line of the level axis' floor, from top to bottom.
     pub(super) x_floor: Option<[(i32, i32); 2]>,
     /// Line of the upright axis' floor, from left to right.
@@ -152,7 +175,7 @@ fn draw_axes(
     y_range: &Range<f64>,
     empty: bool,
 ) -> Result<(String, Frame, Marks), Box<dyn Error>> {
-    let [mut x, mut y] = [x_range, y_range].map(|range| Scale::over(range.clone()));
+    let (mut x, mut y) = (axes.x.scale(x_range), axes.y.scale(y_range));
     if empty {
         // Axes without data get no ticks: any number there would be made up.
         x.ticks = Ticks { labelled: vec![], faint: vec![] };
@@ -165,9 +188,11 @@ fn draw_axes(
         let [x, y] = frame.at([&x, &y], [within(&x, level), within(&y, upright)]);
         (x.round() as i32, y.round() as i32)
     };
-    let marked = |axis: &Axis| axis.floor.as_ref().map(|f| f.value).filter(|v| v.is_finite() && *v > 0.0);
+    let marked = |axis: &Axis| axis.floor.as_ref().map(|f| axis.place(f.value)).filter(|v| v.is_finite() && *v > 0.0);
+    let mark = |point: &PlotPoint| Mark::new(point, [axes.x.place(point.x), axes.y.place(point.y)], at);
     let marks = Marks {
-        series: series.iter().map(|s| s.points.iter().filter_map(|p| Mark::new(p, at)).collect()).collect(),
+        series: series.iter().map(|s| s.points.iter().filter_map(mark).collect()).collect(),
+        front: axes.front,
         x_floor: marked(&axes.x).map(|v| [at(v, y_range.start), at(v, y_range.end)]),
         y_floor: marked(&axes.y).map(|v| [at(x_range.start, v), at(x_range.end, v)]),
     };
@@ -241,9 +266,12 @@ mod tests {
     }
 
     fn axes(floor: f64) -> Axes {
-        let axis =
-            |name: &str, value| Axis { name: name.into(), floor: Some(Floor { value, label: "<floor>".into() }) };
-        Axes { x: axis("error & more", floor), y: axis("time, ms", floor) }
+        let axis = |name: &str, value| Axis {
+            name: name.into(),
+            floor: Some(Floor { value, label: "<floor>".into() }),
+            ..Axis::default()
+        };
+        Axes { x: axis("error & more", floor), y: axis("time, ms", floor), front: false }
     }
 
     /// Draws, reads the result as XML, and returns how many markers have a place on the axes.
@@ -283,6 +311,21 @@ mod tests {
             assert_eq!(count, 0);
             assert!(svg.contains("no data"), "{svg}");
         }
+    }
+
+    #[test]
+    fn values_of_either_sign_have_a_place() {
+        let points = [(-0.05, 1.0), (0.0, 2.0), (0.05, 3.0), (5.0, 4.0)];
+        let x = Axis { name: "excess".into(), linear: Some(0.01), ..Axis::default() };
+        let svg = error_time_svg("t", &[series("ssm", &points)], &Axes { x, ..Axes::default() });
+        assert!(!svg.contains("At zero") && !svg.contains("m edge"), "{svg}");
+        for tick in ["\n-0.05\n", "\n0\n", "\n0.05\n", "\n5\n"] {
+            assert!(svg.contains(tick), "{tick} is not on the axis:\n{svg}");
+        }
+        // Zero is in the middle between a value and its opposite.
+        let line = svg.split("class=\"line\"").nth(1).and_then(|rest| rest.split("points=\"").nth(1)).unwrap();
+        let x = |nth: usize| line.split(' ').nth(nth).unwrap().split(',').next().unwrap().parse::<f64>().unwrap();
+        assert!((x(0) + x(2) - 2.0 * x(1)).abs() <= 2.0 && x(3) > x(2) + 20.0, "{line}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::fmt::{Display, Write as _};
 
 use super::html::Escaped;
 use super::plot::{Axes, Frame, Marks, PlotPoint, Series};
+use super::plot_front;
 
 /// Colours in `plot.css`, told apart by people who confuse red and green.
 pub(super) const COLOURS: usize = 8;
@@ -33,23 +34,28 @@ const SHAPES: usize = 5;
 
 /// A point with its place in the picture.
 pub(super) struct Mark {
-    x: f64,
-    y: f64,
+    /// Where it stands, pixels.
+    pub(super) at: [f64; 2],
+    /// What it stands for.
+    pub(super) values: [f64; 2],
+    /// Whether no other point beats it.
+    pub(super) on_front: bool,
     label: String,
     told: String,
     on_edge: bool,
 }
 
 impl Mark {
-    /// Places a point; `None` when one of its values is not a number.
-    pub(super) fn new(point: &PlotPoint, at: impl Fn(f64, f64) -> (i32, i32)) -> Option<Self> {
+    /// Puts a point where its axes place it; `None` when one of its values is not a number.
+    pub(super) fn new(point: &PlotPoint, places: [f64; 2], at: impl Fn(f64, f64) -> (i32, i32)) -> Option<Self> {
         if !point.x.is_finite() || !point.y.is_finite() {
             return None;
         }
-        let (x, y) = at(point.x, point.y);
+        let (x, y) = at(places[0], places[1]);
         let told = format!("{}: {:.3e}, {:.3e}", point.label, point.x, point.y);
-        let on_edge = point.x <= 0.0 || point.y <= 0.0;
-        Some(Self { x: x.into(), y: y.into(), label: point.label.clone(), told, on_edge })
+        let on_edge = places.iter().any(|place| *place <= 0.0);
+        let (at, values) = ([x.into(), y.into()], [point.x, point.y]);
+        Some(Self { at, values, on_front: false, label: point.label.clone(), told, on_edge })
     }
 }
 
@@ -111,11 +117,17 @@ pub(super) fn curves(
     let (places, end) = legend_places(&names, frame, top);
     // Keep labels off all markers, then off each other.
     taken.extend(marks.series.iter().flatten().map(marker_box));
-    for ((series, marks), place) in series.iter().zip(&marks.series).zip(places) {
-        let _ = writeln!(body, "<g class=\"s c{}\"><title>{}</title>", series.style % COLOURS, Escaped(&series.name));
+    // Where there is a front, the rest steps back, behind it.
+    let steps_back = |of: &[Mark]| marks.front && !of.iter().any(|mark| mark.on_front);
+    let mut order: Vec<_> = series.iter().zip(&marks.series).zip(places).collect();
+    order.sort_by_key(|((_, marks), _)| !steps_back(marks));
+    for ((series, marks), place) in order {
+        let back = if steps_back(marks) { " back" } else { "" };
+        let _ =
+            writeln!(body, "<g class=\"s c{}{back}\"><title>{}</title>", series.style % COLOURS, Escaped(&series.name));
         curve(body, series.style, marks);
         for mark in marks {
-            label(body, mark, frame, &mut taken);
+            label(body, mark, frame, &mut taken, !back.is_empty());
         }
         legend(body, series, place);
         body.push_str("</g>\n");
@@ -137,7 +149,7 @@ pub(super) fn legend_places(names: &[&str], frame: &Frame, top: f64) -> (Vec<(f6
 fn curve(body: &mut String, style: usize, marks: &[Mark]) {
     if marks.len() > 1 {
         let points = marks.iter().fold(String::new(), |mut text, mark| {
-            let _ = write!(text, "{},{} ", mark.x, mark.y);
+            let _ = write!(text, "{},{} ", mark.at[0], mark.at[1]);
             text
         });
         let points = points.trim_end();
@@ -152,14 +164,15 @@ fn curve(body: &mut String, style: usize, marks: &[Mark]) {
         let _ = writeln!(
             body,
             "<path class=\"{class}\" d=\"{}\"><title>{}</title></path>",
-            marker(style, mark.x, mark.y),
+            marker(style, mark.at[0], mark.at[1]),
             Escaped(&mark.told)
         );
     }
 }
 
-/// Writes a point's label where there is room; where there is none it shows only when the curve is pointed at.
-fn label(body: &mut String, mark: &Mark, frame: &Frame, taken: &mut Vec<Taken>) {
+/// Writes a point's label where there is room; where there is none, and where it is hidden, it shows only when the curve
+/// is pointed at.
+fn label(body: &mut String, mark: &Mark, frame: &Frame, taken: &mut Vec<Taken>, hidden: bool) {
     let width = LABEL_LETTER * count(mark.label.chars().count());
     let inside = |b: &Taken| {
         b[0] >= f64::from(frame.x.start)
@@ -179,8 +192,8 @@ fn label(body: &mut String, mark: &Mark, frame: &Frame, taken: &mut Vec<Taken>) 
         (-width / 2.0, -gap - 2.0),
         (-width / 2.0, gap + LABEL_HEIGHT + 2.0),
     ]
-    .map(|(dx, dy)| [mark.x + dx, mark.y + dy - LABEL_HEIGHT, mark.x + dx + width, mark.y + dy]);
-    let found = boxes.iter().find(|b| inside(b) && free(b, taken));
+    .map(|(dx, dy)| [mark.at[0] + dx, mark.at[1] + dy - LABEL_HEIGHT, mark.at[0] + dx + width, mark.at[1] + dy]);
+    let found = boxes.iter().find(|b| !hidden && inside(b) && free(b, taken));
     let class = if found.is_some() { "p" } else { "p crowded" };
     let place = found.unwrap_or(&boxes[0]);
     if found.is_some() {
@@ -211,15 +224,19 @@ fn legend(body: &mut String, series: &Series, (x, y): (f64, f64)) {
 }
 
 /// Writes below the legend what is not in the plot, and why; returns where the picture ends.
-pub(super) fn notes(body: &mut String, series: &[Series], width: f64, top: f64) -> f64 {
+pub(super) fn notes(body: &mut String, series: &[Series], axes: &Axes, width: f64, top: f64) -> f64 {
     let named = |p: &PlotPoint, s: &Series| format!("{} {}", s.name, p.label);
     let all = || series.iter().flat_map(|s| s.points.iter().map(move |p| (p, s)));
     let missing: Vec<_> =
         all().filter(|(p, _)| !p.x.is_finite() || !p.y.is_finite()).map(|(p, s)| named(p, s)).collect();
     let finite = all().filter(|(p, _)| p.x.is_finite() && p.y.is_finite());
-    let zero: Vec<_> = finite.filter(|(p, _)| p.x <= 0.0 || p.y <= 0.0).map(|(p, s)| named(p, s)).collect();
+    let on_edge = |p: &PlotPoint| axes.x.place(p.x) <= 0.0 || axes.y.place(p.y) <= 0.0;
+    let zero: Vec<_> = finite.filter(|(p, _)| on_edge(p)).map(|(p, s)| named(p, s)).collect();
+    let front = if axes.front { vec![plot_front::WORDS.to_owned()] } else { Vec::new() };
     let mut y = top;
-    for (what, names) in [("Not drawn, no figure (NaN): ", missing), ("At zero, drawn hollow on the edge: ", zero)] {
+    for (what, names) in
+        [("", front), ("Not drawn, no figure (NaN): ", missing), ("At zero, drawn hollow on the edge: ", zero)]
+    {
         if names.is_empty() {
             continue;
         }
@@ -247,7 +264,7 @@ fn wrap(text: &str, letters: usize) -> Vec<String> {
 
 /// The space that a marker takes.
 fn marker_box(mark: &Mark) -> Taken {
-    [mark.x - MARKER, mark.y - MARKER, mark.x + MARKER, mark.y + MARKER]
+    [mark.at[0] - MARKER, mark.at[1] - MARKER, mark.at[0] + MARKER, mark.at[1] + MARKER]
 }
 
 /// The outline of a marker: circle, square, triangle, diamond, upturned triangle.

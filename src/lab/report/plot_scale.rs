@@ -50,6 +50,27 @@ impl Scale {
         Self { range, ticks, words: Vec::new() }
     }
 
+    /// Of values of either sign, each placed at exp(asinh(value / linear)); ticks at zero, and at 1, 2 and 5 times the
+    /// powers of ten from `linear` on.
+    pub(super) fn signed(range: Range<f64>, linear: f64) -> Self {
+        let place = |value: f64| (value / linear).asinh().exp();
+        let most = [range.start, range.end].map(|end| (end.ln().sinh() * linear).abs()).into_iter().fold(0.0, f64::max);
+        let sizes = |factors: &'static [u8], least: f64| {
+            #[expect(clippy::cast_possible_truncation, reason = "logarithms of finite numbers")]
+            let exponents = (least.log10().floor() as i32)..=(most.max(least).log10().ceil() as i32);
+            let sizes = exponents.flat_map(move |e| factors.iter().map(move |&factor| tick(factor, e)));
+            let signed = sizes.filter(move |size| *size >= least).flat_map(|size| [-size, size]);
+            signed.filter(|value| range.contains(&place(*value))).collect::<Vec<_>>()
+        };
+        let least = linear * (1.0 - 1e-9);
+        let mut labelled = sizes(&[1, 2, 5], least);
+        labelled.push(0.0);
+        let faint = sizes(&[1, 2, 3, 4, 5, 6, 7, 8, 9], least).into_iter().map(place).collect();
+        let words = labelled.iter().map(|value| (place(*value), signed_label(*value))).collect();
+        let labelled = labelled.into_iter().map(place).filter(|at| range.contains(at)).collect();
+        Self { range: range.clone(), ticks: Ticks { labelled, faint }, words }
+    }
+
     /// How far along the axis a positive value is: 0 to 1 within its range.
     pub(super) fn share(&self, value: f64) -> f64 {
         (value / self.range.start).ln() / (self.range.end / self.range.start).ln()
@@ -100,6 +121,15 @@ fn label(value: f64) -> String {
     let factor = (value / 10.0_f64.powi(exponent)).round();
     let power: String = exponent.to_string().chars().map(superscript).collect();
     if factor > 1.0 { format!("{factor}×10{power}") } else { format!("10{power}") }
+}
+
+/// The same of either sign.
+fn signed_label(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        ..0.0 => format!("-{}", label(-value)),
+        _ => label(value),
+    }
 }
 
 /// A digit or sign, raised.

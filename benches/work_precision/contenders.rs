@@ -1,0 +1,73 @@
+//! What takes part: every named technique, and every encoding that none of them has.
+
+use antumbra::lab::experiment::Backend;
+use antumbra::{DepthLaw, Encoding, MomentFormat, MomentKind, Moments, Pcf, Prefilter, Remix, SUN_ANGLE, techniques};
+
+/// Sides of maps that all are drawn at, texels.
+pub(crate) const SIZES: [u32; 3] = [512, 1024, 2048];
+
+/// Sides at either end, for those of [`FEW`]: all of them there would take as long again as everything else.
+const ENDS: [u32; 2] = [256, 4096];
+
+/// Maps from this side on take most of the time: they get fewer turns, texels.
+pub(crate) const LARGE: u32 = 2048;
+
+/// Who is drawn at every size.
+pub(crate) const FEW: [&str; 3] = ["fsm", "cascades", "smra-plus"];
+
+/// The receiver that others are measured against: nine bilinear comparisons.
+pub(crate) const NINE_TAPS: [&str; 2] = ["cascades pcf5x5", "fsm pcf5x5"];
+
+/// A technique with an encoding.
+#[derive(Clone, Debug)]
+pub(crate) struct Contender {
+    /// As rows name it.
+    pub(crate) name: String,
+    pub(crate) remix: Remix,
+}
+
+/// All of them, in the formats that the adapter has.
+pub(crate) fn contenders(backend: &Backend) -> Vec<Contender> {
+    let named = techniques::NAMED.iter().map(|(name, technique)| ((*name).to_owned(), technique()));
+    // The filters of depth maps that no named technique has.
+    let cascades = |pcf: Pcf| {
+        (format!("cascades {}", pcf.name()), Remix { encoding: Encoding::Depth(pcf), ..techniques::cascades() })
+    };
+    let nine_taps = Remix { encoding: Encoding::Depth(Pcf::Box5x5), ..techniques::fsm() };
+    let soft = Remix { encoding: Encoding::Soft { angle: SUN_ANGLE }, ..techniques::cascades() };
+    let over_w = Remix { depth: DepthLaw::Projective, ..techniques::cascades() };
+    let depths = [cascades(Pcf::Box5x5), (NINE_TAPS[1].to_owned(), nine_taps)]
+        .into_iter()
+        .chain([Pcf::Point, Pcf::Box3x3, Pcf::Box7x7, Pcf::Disc].map(cascades))
+        .chain([("cascades pcss".to_owned(), soft), ("cascades depth/w".to_owned(), over_w)]);
+    // The formats of moments that no named technique has.
+    let formats = [
+        ("vsm summed", MomentKind::Variance, MomentFormat::Summed),
+        ("evsm float16", MomentKind::ExponentialVarianceFour, MomentFormat::Float16),
+        ("msm unorm16", MomentKind::Hamburger, MomentFormat::Unorm16),
+        ("msm summed", MomentKind::Hamburger, MomentFormat::Summed),
+    ];
+    let formats = formats.map(|(name, kind, format)| {
+        let prefilter = Prefilter::of(Moments::new(kind, format));
+        (name.to_owned(), Remix { encoding: Encoding::Moments(prefilter), ..techniques::fsm() })
+    });
+    let all = named.chain(depths).chain(formats);
+    all.map(|(name, remix)| Contender { name, remix: backend.adapted(&remix) }).collect()
+}
+
+/// Sizes that are drawn.
+pub(crate) fn sizes(quick: bool) -> Vec<u32> {
+    if quick { SIZES[..2].to_vec() } else { [&ENDS[..1], &SIZES, &ENDS[1..]].concat() }
+}
+
+/// Whether a contender is drawn at a size. Sums and series of large maps take
+/// seconds on a software adapter.
+pub(crate) fn takes_part(contender: &Contender, size: u32) -> bool {
+    let slow = match contender.remix.encoding {
+        Encoding::Moments(Prefilter { moments, .. }) => {
+            moments.is_summed() || moments.kind() == MomentKind::Convolution
+        }
+        _ => false,
+    };
+    FEW.contains(&contender.name.as_str()) || SIZES.contains(&size) && !(slow && size >= LARGE)
+}
