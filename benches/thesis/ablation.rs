@@ -11,13 +11,16 @@ use crate::programme::{STEP_SIDE, steps};
 /// Bytes of a MiB.
 const MEBI: f64 = 1_048_576.0;
 
-/// One line a step, and the steps that do not pay.
+/// Change of the mean error, as a share, that is called one: less is chance of a few pixels.
+const NOTICEABLE: f64 = 0.005;
+
+/// One line a step, and the steps that pay and that do not.
 pub(crate) fn table(text: &mut String, set: Set) {
     text.push_str(
         "\n| step | change | to | mean error, % | excess, % | ÷ before | lower in | wrong, % | leak, % | acne, % | fit, µs | total, ms | MiB |\n\
          |---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
-    let (mut pay, mut cost) = (Vec::new(), Vec::new());
+    let (mut pay, mut cost, mut same) = (Vec::new(), Vec::new(), Vec::new());
     for step in steps() {
         let of =
             |figure: &dyn Fn(&Record) -> f64| mean(&set.of(step.name, Some(STEP_SIDE)).map(figure).collect::<Vec<_>>());
@@ -27,7 +30,15 @@ pub(crate) fn table(text: &mut String, set: Set) {
             ("–".to_owned(), "–".to_owned())
         } else {
             let sentence = format!("*{}* ({:.3} times the mean error of *{}*)", step.name, duel.mean, step.from);
-            if duel.mean < 1.0 { &mut pay } else { &mut cost }.push(sentence);
+            let (less, more) = (duel.mean < 1.0 - NOTICEABLE, duel.mean > 1.0 + NOTICEABLE);
+            if less {
+                &mut pay
+            } else if more {
+                &mut cost
+            } else {
+                &mut same
+            }
+            .push(sentence);
             (format!("{:.3}", duel.mean), format!("{} of {}", duel.lower, duel.count))
         };
         let _ = writeln!(
@@ -47,7 +58,8 @@ pub(crate) fn table(text: &mut String, set: Set) {
         );
     }
     let _ = writeln!(text, "\nSteps that lower the mean error: {}.", list(&pay));
-    let _ = writeln!(text, "\nSteps that do not: {}.", list(&cost));
+    let _ = writeln!(text, "\nSteps that raise it: {}.", list(&cost));
+    let _ = writeln!(text, "\nSteps that change it by less than {} %: {}.", 100.0 * NOTICEABLE, list(&same));
 }
 
 fn list(sentences: &[String]) -> String {

@@ -5,8 +5,8 @@ use antumbra::lab::truth::Truth;
 use antumbra::{Aabb, Camera, FitInput, Light, MapBudget, Object, Remix, Scene, Select, ShadowFrame, ShadowTechnique};
 use glam::{DMat4, DQuat, DVec3, Vec3};
 
-/// Cosine of the angle to the light (80°) from which a surface counts as grazed. The thesis's rule begins at 85°: a wider
-/// band holds more pixels and what lies just beside that rule.
+/// Cosine of the angle to the light (80°) from which a surface counts as grazed. The thesis's rule begins at 85°: a
+/// wider band holds more pixels and what lies just beside that rule.
 const GRAZED: f32 = 0.173_648_18;
 
 /// What shows in one picture.
@@ -92,13 +92,25 @@ fn in_view(camera: &Camera, bounds: &Aabb) -> bool {
     (0..4).all(|side| !corners.iter().all(|at| sides(at)[side])) && corners.iter().any(|at| (0.0..FAR).contains(&-at.z))
 }
 
-/// Largest change from frame to frame of the pixels that a texel covers in the middle of the picture at any of the
-/// depths, as a factor less one, while the building enters. `greedy`: maps are fitted to the objects in the picture, as
-/// parallel splits were published, instead of the scene.
-pub(crate) fn largest_jump(remix: &Remix, greedy: bool) -> Result<f64, String> {
+/// Largest changes from frame to frame of the pixels that a texel covers, as factors less one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Jumps {
+    /// Whichever map serves the place.
+    pub(crate) any: f64,
+    /// Where the same map serves it in both frames.
+    pub(crate) same_map: f64,
+}
+
+/// A map, and the pixels that a texel of it covers.
+type Served = Option<(usize, f64)>;
+
+/// Jumps in the middle of the picture, at any of the depths, while the building enters. Each frame knows the one before,
+/// as in an engine. `greedy`: maps are fitted to the objects in the picture, as parallel splits were published, instead
+/// of the scene.
+pub(crate) fn largest_jumps(remix: &Remix, greedy: bool) -> Result<Jumps, String> {
     let all = objects();
-    let mut before: Option<[Option<f64>; 6]> = None;
-    let mut largest = 0.0_f64;
+    let mut previous: Option<(ShadowFrame, [Served; 6])> = None;
+    let mut largest = Jumps::default();
     for frame in 0..FRAMES {
         let (camera, travel) = (camera(frame), DVec3::new(-0.5, -0.4, 0.4).normalize());
         let seen: Vec<Object> =
@@ -111,26 +123,32 @@ pub(crate) fn largest_jump(remix: &Remix, greedy: bool) -> Result<f64, String> {
             scene: Scene { objects: &seen, ..Scene::within(bounds) },
             map: MapBudget { side: SIDE, layers: maps, views: maps },
             origin: camera.eye(),
-            previous: None,
+            previous: previous.as_ref().map(|(frame, _)| frame),
         };
         let fitted = remix.fit(&input).map_err(|error| error.to_string())?;
         let now = DEPTHS.map(|depth| texel_at(&fitted, &camera, depth, -travel));
-        for (a, b) in before.iter().flatten().zip(&now).filter_map(|(a, b)| a.zip(*b)) {
-            largest = largest.max((a / b).max(b / a) - 1.0);
+        let before = previous.iter().flat_map(|(_, before)| before).zip(&now);
+        for ((map_before, a), (map, b)) in before.filter_map(|(a, b)| a.zip(*b)) {
+            let jump = (a / b).max(b / a) - 1.0;
+            largest.any = largest.any.max(jump);
+            largest.same_map = largest.same_map.max(if map == map_before { jump } else { 0.0 });
         }
-        before = Some(now);
+        previous = Some((fitted, now));
     }
     Ok(largest)
 }
 
-/// Pixels that a texel of the map that serves a depth covers there, facing the light.
-fn texel_at(frame: &ShadowFrame, camera: &Camera, depth: f64, normal: DVec3) -> Option<f64> {
+/// The map that serves a depth, and the pixels that a texel of it covers there, facing the light.
+fn texel_at(frame: &ShadowFrame, camera: &Camera, depth: f64, normal: DVec3) -> Served {
     let views = &frame.uniforms.views[..frame.views.len()];
     let serves = |index: usize| {
         let [near, far] = frame.views[index].domain.map(f64::from);
         frame.wgsl.select == Select::Finest || frame.views.len() == 1 || (near..=far).contains(&depth)
     };
     let at = camera.forward() * depth;
-    let found = |index: usize| footprint_at(&views[index], frame.map.side, camera, camera.eye(), at, normal);
-    (0..views.len()).filter(|index| serves(*index)).find_map(found).map(|point| point.area)
+    let found = |index: usize| {
+        let point = footprint_at(&views[index], frame.map.side, camera, camera.eye(), at, normal)?;
+        Some((index, point.area))
+    };
+    (0..views.len()).filter(|index| serves(*index)).find_map(found)
 }

@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use antumbra::lab::statistics::mean;
+
 use crate::duel::{Duel, Set};
 use crate::measure::Record;
 use crate::pictures::Shown;
 use crate::programme::{CONTRIBUTORS, FOCUSED, GUARDED, PSSM, SIX, SMRA, UNFILTERED};
 
-/// What "far" asks for: mean error over that of the best contributor. At 1 any gain would do; at ½ few of the gains
-/// that any paper reports.
+/// What "far" asks for: mean error over that of the best contributor. At 1 any gain would do; at ½ hardly any would.
 const FAR: f64 = 0.8;
 
 /// The picture in which trapezoids do parallel splits most harm, or least good, with the smallest maps.
@@ -121,25 +122,21 @@ pub(crate) fn trapezoids(text: &mut String, set: Set, shown: &Shown) {
         thirds[2],
         trade(thirds)
     );
-    let smallest = set.sizes().first().copied().unwrap_or_default();
-    let texel = |name: &str, at: usize| {
-        set.mean(name, Some(smallest), |r| r.artefacts.map_or(f64::NAN, |artefacts| artefacts.perspective[at]))
+    let here = |record: &&Record| record.scene == shown.scene && record.case == shown.case;
+    let texel = |name: &str, at: usize, everywhere: bool| {
+        let these = set.of(name, Some(shown.size)).filter(|record| everywhere || here(record));
+        mean(&these.filter_map(|r| r.artefacts).map(|artefacts| artefacts.perspective[at]).collect::<Vec<_>>())
     };
+    let [median, high] = [0, 1].map(|at| [PSSM, UNFILTERED].map(|name| texel(name, at, true)));
+    let [median_here, high_here] = [0, 1].map(|at| [PSSM, UNFILTERED].map(|name| texel(name, at, false)));
     let _ = writeln!(
         text,
-        "At {smallest}, half of what is seen has texels of at most {:.2} pixels under {PSSM} and {:.2} under {UNFILTERED}, 19 in 20 at most {:.2} \
-         and {:.2} (perspective part, mean over viewpoints).",
-        texel(PSSM, 0),
-        texel(UNFILTERED, 0),
-        texel(PSSM, 1),
-        texel(UNFILTERED, 1)
+        "At {}, half of what is seen has texels of at most {:.2} pixels under {PSSM} and {:.2} under {UNFILTERED}, 19 in 20 at most {:.2} and {:.2} (perspective part, \
+         mean over viewpoints); in the picture below {:.2} and {:.2}, {:.2} and {:.2}.",
+        shown.size, median[0], median[1], high[0], high[1], median_here[0], median_here[1], high_here[0], high_here[1]
     );
     let name = format!("{}/{} at {}", shown.scene, shown.case, shown.size);
-    let find = |name: &str| {
-        set.of(name, Some(shown.size))
-            .find(|r| r.scene == shown.scene && r.case == shown.case)
-            .map_or(f64::NAN, |r| 100.0 * r.wrong)
-    };
+    let find = |name: &str| set.of(name, Some(shown.size)).find(here).map_or(f64::NAN, |r| 100.0 * r.wrong);
     let _ = writeln!(
         text,
         "\n![Where trapezoids cost most](thesis/why.jpg)\n\n*{name}, the picture in which the trapezoids cost most (or gain least) at that size, where \
@@ -153,18 +150,19 @@ pub(crate) fn trapezoids(text: &mut String, set: Set, shown: &Shown) {
 
 /// Who pays for whom.
 fn trade(thirds: [f64; 3]) -> String {
-    let of = |holds: &dyn Fn(f64) -> bool| {
+    let of = |holds: &dyn Fn(f64) -> bool, one: &str| {
         let names: Vec<&str> = ["near", "middle", "far"]
             .into_iter()
             .zip(thirds)
-            .filter(|(_, t)| holds(*t))
+            .filter(|(_, third)| holds(*third))
             .map(|(name, _)| name)
             .collect();
-        names.join(" and ")
+        match names.as_slice() {
+            [] => format!("none {one}s"),
+            [name] => format!("the {name} third {one}s"),
+            names if names.len() == thirds.len() => format!("all {one}"),
+            names => format!("the {} thirds {one}", names.join(" and ")),
+        }
     };
-    match (of(&|third| third < 1.0), of(&|third| third > 1.0)) {
-        (gain, pay) if gain.is_empty() => format!(": nothing gains, {pay} pays"),
-        (gain, pay) if pay.is_empty() => format!(": {gain} gains, and nothing pays"),
-        (gain, pay) => format!(": {gain} gains, {pay} pays"),
-    }
+    format!(": {}, {}", of(&|third| third < 1.0, "gain"), of(&|third| third > 1.0, "lose"))
 }

@@ -36,7 +36,8 @@ const TABLE_ONE: &str = "
 
 A number for each class, with the mark of the thesis (✓ tackled, ✗ present, – does not have it) behind it; the least is the best. Built-in scenes, all
 viewpoints, maps of the smallest size unless the line says otherwise. *The light grazes*: from 80° on. *Jump*: from frame to frame in
-the middle of the picture, at six depths, while the head turns and a large building enters the picture (figure 15).
+the middle of the picture, at six depths, while the head turns and a large building enters it (figure 15); where planes move, a place may
+be served by another map.
 ";
 
 const TABLE_TWO: &str = "

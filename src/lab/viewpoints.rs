@@ -105,25 +105,23 @@ pub fn sparse_city_viewpoints() -> Vec<Viewpoint> {
 /// Empty for a scene that is not built in.
 #[must_use]
 pub fn thesis_viewpoints(scene: &str) -> Vec<Viewpoint> {
-    let with = |mut views: Vec<Viewpoint>, further: &[(&str, [f64; 3], [f64; 3], [f64; 2])]| {
-        for (name, eye, target, [azimuth, elevation]) in further {
-            let (eye, target) = (DVec3::from(*eye), DVec3::from(*target));
-            let (name, travel) = (format!("{scene}-{name}"), sunlight(*azimuth, *elevation));
-            views.push(Viewpoint { name, eye, target, travel, ..views[0].clone() });
-        }
-        views
-    };
-    match scene {
-        "treeline" => with(treeline_viewpoints(), &[("evening", [13.0, 2.0, 8.5], [0.0, 1.9, 0.0], [-75.0, 22.0])]),
-        "sparse-city" => with(
+    let (mut views, further) = match scene {
+        "treeline" => (treeline_viewpoints(), vec![("evening", [13.0, 2.0, 8.5], [0.0, 1.9, 0.0], [-75.0, 22.0])]),
+        "sparse-city" => (
             sparse_city_viewpoints(),
-            &[
+            vec![
                 ("plaza", [-46.0, 24.0, 78.0], [10.0, 4.0, 0.0], [118.0, 44.0]),
                 ("roofs", [340.0, 150.0, -420.0], [-20.0, 10.0, 0.0], [62.0, 30.0]),
             ],
         ),
-        _ => Vec::new(),
+        _ => return Vec::new(),
+    };
+    for (name, eye, target, [azimuth, elevation]) in further {
+        let (eye, target) = (DVec3::from(eye), DVec3::from(target));
+        let (name, travel) = (format!("{scene}-{name}"), sunlight(azimuth, elevation));
+        views.push(Viewpoint { name, eye, target, travel, ..views[0].clone() });
     }
+    views
 }
 
 /// The way light travels from a sun at `elevation` above the horizon, `azimuth` from +z towards +x; degrees, because
