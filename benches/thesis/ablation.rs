@@ -17,8 +17,8 @@ const NOTICEABLE: f64 = 0.005;
 /// One line a step, and the steps that pay and that do not.
 pub(crate) fn table(text: &mut String, set: Set) {
     text.push_str(
-        "\n| step | change | to | mean error, % | excess, % | ÷ before | lower in | wrong, % | leak, % | acne, % | fit, µs | total, ms | MiB |\n\
-         |---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        "\n| step | change | to | maps | mean error, % | excess, % | ÷ before | lower in | wrong, % | leak, % | acne, % | fit, µs | total, ms | MiB |\n\
+         |---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     let (mut pay, mut cost, mut same) = (Vec::new(), Vec::new(), Vec::new());
     for step in steps() {
@@ -43,10 +43,11 @@ pub(crate) fn table(text: &mut String, set: Set) {
         };
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {:.3} | {:.3} | {ratio} | {lower} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.1} |",
+            "| {} | {} | {} | {:.1} | {:.3} | {:.3} | {ratio} | {lower} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.1} |",
             step.name,
             step.change,
             if step.from.is_empty() { "–" } else { step.from },
+            of(&|r| r.maps as f64),
             100.0 * of(&|r| r.mae),
             100.0 * of(&|r| r.excess),
             100.0 * of(&|r| r.wrong),

@@ -104,9 +104,9 @@ pub(crate) struct Jumps {
 /// A map, and the pixels that a texel of it covers.
 type Served = Option<(usize, f64)>;
 
-/// Jumps in the middle of the picture, at any of the depths, while the building enters. Each frame knows the one before,
-/// as in an engine. `greedy`: maps are fitted to the objects in the picture, as parallel splits were published, instead
-/// of the scene.
+/// Jumps in the middle of the picture, at any of the depths, while the building enters. Each frame knows the one
+/// before, as in an engine. `greedy`: maps are fitted to the objects in the picture, as parallel splits were published,
+/// instead of the scene.
 pub(crate) fn largest_jumps(remix: &Remix, greedy: bool) -> Result<Jumps, String> {
     let all = objects();
     let mut previous: Option<(ShadowFrame, [Served; 6])> = None;

@@ -154,7 +154,7 @@ pub(crate) fn about_table_one(text: &mut String, set: Set) -> Result<(), String>
         text,
         "\nErratum TH-16: the table marks PSSM ✗ for perspective aliasing. Here it {} the texels of the 19 in 20 from {standard:.1} to {split:.1} pixels. Its ✗ for \
          continuity is that of maps fitted to the objects in the picture, as they were published: these jump by {:.0} % while a building enters, and by \
-         {:.1} % fitted to the scene as all are here. One lookup of this crate weighs four texels where the thesis's takes the nearest, so that its {SSM}, {TSM} \
+         {:.1} % fitted to the scene as all are here. One lookup of this crate weighs four texels where the thesis calls hard shadows binary, so that its {SSM}, {TSM} \
          and {PSSM} have grey edge pixels where texels are coarse.",
         if split < standard { "reduces" } else { "does not reduce" },
         100.0 * greedy,

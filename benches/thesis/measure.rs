@@ -13,7 +13,7 @@ use antumbra::lab::truth::{CacheUse, Truth, TruthCache};
 use antumbra::{Light, Remix};
 
 use crate::artefacts::Artefacts;
-use crate::programme::{Named, Programme, STEP_SIDE, Step, main_techniques, six, steps};
+use crate::programme::{Named, Programme, SHOWN, STEP_SIDE, Step, main_techniques, six, steps};
 
 /// Times of one picture, milliseconds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +59,8 @@ pub(crate) struct Record {
     pub(crate) case: String,
     pub(crate) size: u32,
     pub(crate) name: &'static str,
+    /// Maps that were drawn.
+    pub(crate) maps: usize,
     pub(crate) mae: f64,
     pub(crate) excess: f64,
     pub(crate) rmse: f64,
@@ -117,9 +119,12 @@ pub(crate) fn built_in(backend: &mut Backend, programme: &Programme, results: &m
         for case in &assignment.cases {
             let mut scenery = Scenery::new(backend, &assignment, case, false, results)?;
             for &size in programme.sizes() {
-                scenery.photograph(&techniques, size, size == programme.sizes()[0], results)?;
+                let repetitions = if size == STEP_SIDE { programme.repetitions() } else { 1 };
+                let how = How { size, repetitions, closely: size == programme.sizes()[0] };
+                scenery.photograph(&techniques, how, results)?;
             }
-            scenery.photograph(&further, STEP_SIDE, false, results)?;
+            let how = How { size: STEP_SIDE, repetitions: programme.repetitions(), closely: false };
+            scenery.photograph(&further, how, results)?;
         }
     }
     Ok(())
@@ -132,11 +137,22 @@ pub(crate) fn shared(backend: &mut Backend, programme: &Programme, results: &mut
         for case in &assignment.cases {
             let mut scenery = Scenery::new(backend, &assignment, case, true, results)?;
             for &size in programme.sizes() {
-                scenery.photograph(&techniques, size, false, results)?;
+                scenery.photograph(&techniques, How { size, repetitions: 1, closely: false }, results)?;
             }
         }
     }
     Ok(())
+}
+
+/// How pictures of a case are taken.
+#[derive(Clone, Copy)]
+struct How {
+    /// Side of maps, texels.
+    size: u32,
+    /// Turns of each pass; medians are kept.
+    repetitions: u32,
+    /// Whether artefacts are measured, and masks kept to be shown.
+    closely: bool,
 }
 
 /// A case with its truth, ready to be photographed.
@@ -166,10 +182,12 @@ impl<'a> Scenery<'a> {
         Ok(Self { studio, setting, visible, truth, shared, scene, case })
     }
 
-    /// Adds a record of each technique; those of the thesis's scenes keep their masks.
-    fn photograph(&mut self, all: &[Named], size: u32, closely: bool, results: &mut Results) -> Result<(), String> {
+    /// Adds a record of each technique, and keeps the masks that may be shown.
+    fn photograph(&mut self, all: &[Named], how: How, results: &mut Results) -> Result<(), String> {
+        let size = how.size;
+        let shown = SHOWN.contains(&(self.scene.as_str(), self.case.as_str())) || how.closely;
         for (name, remix) in all {
-            let (record, mask) = self.shoot(name, remix, size, closely)?;
+            let (record, mask) = self.shoot(name, remix, how)?;
             println!(
                 "{}/{} {size} {name}: excess {:.3} %, wrong {:.3} %, {:.0} ms",
                 record.scene,
@@ -178,7 +196,7 @@ impl<'a> Scenery<'a> {
                 100.0 * record.wrong,
                 record.times.total()
             );
-            if !self.shared {
+            if shown && !self.shared {
                 results.masks.insert((format!("{}/{}", self.scene, self.case), size, name), mask);
             }
             results.records.push(record);
@@ -186,16 +204,10 @@ impl<'a> Scenery<'a> {
         Ok(())
     }
 
-    fn shoot(
-        &mut self,
-        name: &'static str,
-        remix: &Remix,
-        size: u32,
-        closely: bool,
-    ) -> Result<(Record, Vec<u8>), String> {
-        let shot = self.studio.shoot(remix, size, 1).map_err(|error| error.to_string())?;
+    fn shoot(&mut self, name: &'static str, remix: &Remix, how: How) -> Result<(Record, Vec<u8>), String> {
+        let shot = self.studio.shoot(remix, how.size, how.repetitions).map_err(|error| error.to_string())?;
         let scores = shot.scores(&self.truth).map_err(|error| error.to_string())?;
-        let artefacts = closely.then(|| {
+        let artefacts = how.closely.then(|| {
             let footprints = Measured::new(&self.visible, &shot.frame, &self.setting, &self.truth.valid);
             let Light::Directional { travel } = self.setting.light else { return Artefacts::default() };
             Artefacts::of(&shot.mask, &self.truth, travel, footprints.perspective)
@@ -204,8 +216,9 @@ impl<'a> Scenery<'a> {
             shared: self.shared,
             scene: self.scene.clone(),
             case: self.case.clone(),
-            size,
+            size: how.size,
             name,
+            maps: shot.frame.views.len(),
             mae: scores.mae,
             excess: scores.excess,
             rmse: scores.rmse,
@@ -226,7 +239,7 @@ impl<'a> Scenery<'a> {
 /// Times the six where the thesis has its pictures, turn by turn, so that other work on the machine meets all of them.
 pub(crate) fn time(backend: &mut Backend, programme: &Programme, results: &mut Results) -> Result<(), String> {
     let techniques = adapted(backend, six());
-    for (scene, viewpoint) in crate::programme::SHOWN {
+    for (scene, viewpoint) in SHOWN {
         for assignment in programme.built_in()?.iter().filter(|assignment| assignment.scene == scene) {
             let Some(case) = assignment.cases.iter().find(|case| case.name == viewpoint) else { continue };
             let mut studio =
@@ -235,7 +248,8 @@ pub(crate) fn time(backend: &mut Backend, programme: &Programme, results: &mut R
                 let mut times = vec![Vec::new(); techniques.len()];
                 for _ in 0..programme.turns() {
                     for ((_, remix), times) in techniques.iter().zip(&mut times) {
-                        let shot = studio.shoot(remix, size, 1).map_err(|error| error.to_string())?;
+                        let shot =
+                            studio.shoot(remix, size, programme.repetitions()).map_err(|error| error.to_string())?;
                         times.push(Times::of(&shot));
                     }
                 }

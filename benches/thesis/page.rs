@@ -43,7 +43,7 @@ be served by another map.
 const TABLE_TWO: &str = "
 ## Table 2: time
 
-Medians of turns in which every technique is drawn once. Casters: all maps; receivers: one lookup a pixel, without shading.
+Medians of turns, each of which draws every technique, every pass several times. Casters: all maps; receivers: one lookup a pixel, without shading.
 ";
 
 /// All of it. Pictures lie in `thesis/` beside it.
@@ -68,7 +68,7 @@ pub(crate) fn page(meta: &[(&str, String)], results: &Results, shown: &Shown) ->
     let _ = writeln!(
         text,
         "\n## One change at a time\n\nMaps of {STEP_SIDE}, mean over all viewpoints of the built-in scenes. *To*: the step that is changed; *÷ before*: mean error over that \
-         step's, geometric mean. Total: fit, casters, filter and receivers, one turn each. Filters of moments are three texels wide, with mips."
+         step's, geometric mean. *Maps*: how many were drawn. Total: fit, casters, filter and receivers. Filters of moments are three texels wide, with mips."
     );
     ablation::table(&mut text, built_in);
     Ok(text)
