@@ -19,7 +19,7 @@ pub(crate) fn most_harm(records: &[Record]) -> Result<Shown, String> {
     let harm = |record: &&Record| set.beside(record, PSSM).map_or(0.0, |plain| record.wrong - plain.wrong);
     let found = set.of(UNFILTERED, smallest).max_by(|a, b| harm(a).total_cmp(&harm(b)));
     let found = found.ok_or("no picture of parallel splits with trapezoids")?;
-    Ok(Shown { scene: found.scene.clone(), case: found.case.clone(), size: found.size })
+    Ok(Shown::of(found, &[PSSM, UNFILTERED, SMRA], "why.jpg"))
 }
 
 /// Errors of every technique at every size, mean over viewpoints.

@@ -54,7 +54,8 @@ fn run() -> Result<(), String> {
     // Write pictures, then the page that shows them.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let docs = if programme.quick { root.join("target/thesis") } else { root.join("docs") };
-    let shown = claims::most_harm(&results.records)?;
+    let (harm, worst) = (claims::most_harm(&results.records)?, plus::worst(&results.records)?);
+    let shown = [&harm, &worst];
     pictures::write(&programme, &mut results, &shown, &docs)?;
     let meta = [
         ("command", programme.command()),
@@ -63,7 +64,7 @@ fn run() -> Result<(), String> {
         ("date", cli::now()),
         ("took", took(start, results.traced)),
     ];
-    write_whole(&docs.join("THESIS.md"), page::page(&meta, &results, &shown)?.as_bytes())?;
+    write_whole(&docs.join("THESIS.md"), page::page(&meta, &results, shown)?.as_bytes())?;
     println!("{}", docs.join("THESIS.md").display());
     Ok(())
 }

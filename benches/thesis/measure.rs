@@ -151,7 +151,7 @@ struct How {
     size: u32,
     /// Turns of each pass; medians are kept.
     repetitions: u32,
-    /// Whether artefacts are measured, and masks kept to be shown.
+    /// Whether artefacts are measured.
     closely: bool,
 }
 
@@ -185,7 +185,6 @@ impl<'a> Scenery<'a> {
     /// Adds a record of each technique, and keeps the masks that may be shown.
     fn photograph(&mut self, all: &[Named], how: How, results: &mut Results) -> Result<(), String> {
         let size = how.size;
-        let shown = SHOWN.contains(&(self.scene.as_str(), self.case.as_str())) || how.closely;
         for (name, remix) in all {
             let (record, mask) = self.shoot(name, remix, how)?;
             println!(
@@ -196,7 +195,7 @@ impl<'a> Scenery<'a> {
                 100.0 * record.wrong,
                 record.times.total()
             );
-            if shown && !self.shared {
+            if !self.shared && main_techniques().iter().any(|(known, _)| known == name) {
                 results.masks.insert((format!("{}/{}", self.scene, self.case), size, name), mask);
             }
             results.records.push(record);

@@ -47,7 +47,7 @@ Medians of turns, each of which draws every technique, every pass several times.
 ";
 
 /// All of it. Pictures lie in `thesis/` beside it.
-pub(crate) fn page(meta: &[(&str, String)], results: &Results, shown: &Shown) -> Result<String, String> {
+pub(crate) fn page(meta: &[(&str, String)], results: &Results, shown: [&Shown; 2]) -> Result<String, String> {
     let mut text = HEAD.to_owned();
     text.push('\n');
     for (name, value) in meta {
@@ -57,8 +57,8 @@ pub(crate) fn page(meta: &[(&str, String)], results: &Results, shown: &Shown) ->
     let built_in = Set { records: &results.records, shared: false };
     let shared = Set { records: &results.records, shared: true };
     figures(&mut text, built_in);
-    main_table(&mut text, built_in, shared, shown);
-    smra_plus(&mut text, built_in, shared);
+    main_table(&mut text, built_in, shared, shown[0]);
+    smra_plus(&mut text, built_in, shared, shown[1]);
     text.push_str(TABLE_ONE);
     classes::table_one(&mut text, built_in)?;
     classes::about_table_one(&mut text, built_in)?;
@@ -114,9 +114,10 @@ fn main_table(text: &mut String, built_in: Set, shared: Set, shown: &Shown) {
     claims::trapezoids(text, built_in, shown);
 }
 
-fn smra_plus(text: &mut String, built_in: Set, shared: Set) {
+fn smra_plus(text: &mut String, built_in: Set, shared: Set, worst: &Shown) {
     text.push_str("\n## SMRA plus against the best of the others\n\nThe others are SSM, TSM, PSSM, VSM and SMRA, and TSM guarded and VSM focused. Size by size.\n");
     plus::against_the_best(text, built_in);
+    plus::look_at_worst(text, built_in, worst);
     if shared.all().next().is_some() {
         text.push_str("\n### On the shared cases\n\nThe others are SSM, TSM, PSSM, VSM and SMRA.\n");
         plus::against_the_best(text, shared);

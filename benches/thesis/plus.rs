@@ -7,6 +7,7 @@ use antumbra::lab::statistics::geometric_mean;
 use crate::duel::{Duel, Set, holds};
 use crate::measure::Record;
 use crate::peers::peer;
+use crate::pictures::Shown;
 use crate::programme::{PLUS, RIVALS, SSM};
 
 /// No case may have more than this times the mean error of the best of the others.
@@ -18,6 +19,33 @@ const NO_CASE_ABOVE: f64 = 1.0;
 
 /// How far a floor may be from the published one, as a share of it.
 const SAME_FLOOR: f64 = 0.02;
+
+/// The picture in which SMRA plus has most mean error over that of the best of the others, or gains least.
+pub(crate) fn worst(records: &[Record]) -> Result<Shown, String> {
+    let set = Set { records, shared: false };
+    let pairs = set.of(PLUS, None).filter_map(|ours| Some((ours, set.best(ours, &RIVALS, |r| r.mae)?)));
+    let found = pairs.max_by(|a, b| (a.0.mae / a.1.mae).total_cmp(&(b.0.mae / b.1.mae)));
+    let (ours, theirs) = found.ok_or("no picture of SMRA plus beside others")?;
+    Ok(Shown::of(ours, &[theirs.name, PLUS], "worst.jpg"))
+}
+
+/// That picture.
+pub(crate) fn look_at_worst(text: &mut String, set: Set, shown: &Shown) {
+    let error = |name: &str| {
+        let found = set.of(name, Some(shown.size)).find(|r| r.scene == shown.scene && r.case == shown.case);
+        found.map_or_else(String::new, |r| format!("{name} {:.3} %", 100.0 * r.mae))
+    };
+    let _ = writeln!(
+        text,
+        "\n![Where SMRA plus gains least](thesis/{})\n\n*{}/{} at {}, the picture with the largest ratio, where the two differ most; below, red where light leaks, blue where shadow \
+         is false. Mean error of the whole picture: {}.*",
+        shown.file,
+        shown.scene,
+        shown.case,
+        shown.size,
+        shown.names.iter().map(|name| error(name)).collect::<Vec<_>>().join(", ")
+    );
+}
 
 /// Excess and mean error beside those of the best, case by case, and what they come to.
 pub(crate) fn against_the_best(text: &mut String, set: Set) {

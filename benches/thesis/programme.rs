@@ -150,7 +150,8 @@ impl Programme {
     /// The command line that does this again.
     pub(crate) fn command(&self) -> String {
         let scenes = if shared_scenes().is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-        format!("{scenes}cargo bench --bench thesis{}", if self.quick { " -- --quick" } else { "" })
+        let profile = if cfg!(debug_assertions) { "test" } else { "bench" };
+        format!("{scenes}cargo {profile} --bench thesis{}", if self.quick { " -- --quick" } else { "" })
     }
 
     /// The thesis's scenes.
