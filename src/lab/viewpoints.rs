@@ -100,6 +100,30 @@ pub fn sparse_city_viewpoints() -> Vec<Viewpoint> {
     ]
 }
 
+/// Viewpoints on which the thesis is put to the test: those of the scene, and ordinary ones to make at least six.
+///
+/// Empty for a scene that is not built in.
+#[must_use]
+pub fn thesis_viewpoints(scene: &str) -> Vec<Viewpoint> {
+    let (mut views, further) = match scene {
+        "treeline" => (treeline_viewpoints(), vec![("evening", [13.0, 2.0, 8.5], [0.0, 1.9, 0.0], [-75.0, 22.0])]),
+        "sparse-city" => (
+            sparse_city_viewpoints(),
+            vec![
+                ("plaza", [-46.0, 24.0, 78.0], [10.0, 4.0, 0.0], [118.0, 44.0]),
+                ("roofs", [340.0, 150.0, -420.0], [-20.0, 10.0, 0.0], [62.0, 30.0]),
+            ],
+        ),
+        _ => return Vec::new(),
+    };
+    for (name, eye, target, [azimuth, elevation]) in further {
+        let (eye, target) = (DVec3::from(eye), DVec3::from(target));
+        let (name, travel) = (format!("{scene}-{name}"), sunlight(azimuth, elevation));
+        views.push(Viewpoint { name, eye, target, travel, ..views[0].clone() });
+    }
+    views
+}
+
 /// The way light travels from a sun at `elevation` above the horizon, `azimuth` from +z towards +x; degrees, because
 /// these are written by hand.
 fn sunlight(azimuth: f64, elevation: f64) -> DVec3 {
@@ -143,7 +167,7 @@ mod tests {
     use crate::lab::{sparse_city::sparse_city, treeline::treeline};
 
     fn all() -> Vec<Viewpoint> {
-        [treeline_viewpoints(), sparse_city_viewpoints()].concat()
+        [thesis_viewpoints("treeline"), thesis_viewpoints("sparse-city")].concat()
     }
 
     /// Cosine between the level parts of view and light.
@@ -166,9 +190,17 @@ mod tests {
     }
 
     #[test]
+    fn the_thesis_is_tested_on_six_viewpoints_a_scene() {
+        assert_eq!(["treeline", "sparse-city"].map(|scene| thesis_viewpoints(scene).len()), [6; 2]);
+        assert!(thesis_viewpoints("treeline").starts_with(&treeline_viewpoints()));
+        assert!(thesis_viewpoints("sparse-city").starts_with(&sparse_city_viewpoints()));
+        assert!(thesis_viewpoints("elsewhere").is_empty());
+    }
+
+    #[test]
     fn viewpoints_stand_in_the_open_and_see_much() {
         const SIZE: [u32; 2] = [160, 120];
-        let scenes = [(treeline(), treeline_viewpoints()), (sparse_city(), sparse_city_viewpoints())];
+        let scenes = [(treeline(), thesis_viewpoints("treeline")), (sparse_city(), thesis_viewpoints("sparse-city"))];
         for (scene, view) in scenes.iter().flat_map(|(scene, views)| views.iter().map(move |view| (scene, view))) {
             let projection = perspective(view.fov_y, 4.0 / 3.0, view.near, view.far);
             let clip = projection * look_to_mat4(DVec3::ZERO, (view.target - view.eye).normalize(), view.up);
