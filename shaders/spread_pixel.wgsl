@@ -3,6 +3,9 @@ struct AntumbraSpread {
     // From the receiver to two of the four taps: texture coordinates (times w), w, and depth. The others lie opposite.
     first: vec4f,
     second: vec4f,
+    // By how much either pair is nearer to the light than its plane is: where a surface ends within the pixel, its plane
+    // goes on below the next one.
+    lift: vec2f,
     // w at the receiver.
     w: f32,
     // What may be read without reading beyond what is drawn, texture coordinates.
@@ -41,5 +44,6 @@ fn antumbra_spread(view: AntumbraView, position: vec3f, normal: vec3f) -> Antumb
     ));
     let w = max(dot(view.w_from_render, vec4f(position, 1.0)), ANTUMBRA_SPREAD_LEAST_W);
     let low = view.rect.xy + 0.5 * view.bias.w;
-    return AntumbraSpread(from_render * first, from_render * second, w, low, view.rect.zw - 0.5 * view.bias.w);
+    let lift = vec2f(length(first), length(second)) * length(view.depth_from_render.xyz);
+    return AntumbraSpread(from_render * first, from_render * second, lift, w, low, view.rect.zw - 0.5 * view.bias.w);
 }

@@ -5,6 +5,11 @@
 //! line of sight d; four points of it are looked up, each at its own depth, so that a wide pixel needs no more bias
 //! than a narrow one.
 //!
+//! Where a surface ends within the pixel, its plane goes on below the next one, whose shadow a tap would find there: lit
+//! walls would be dark along the ground. So each tap is nearer to the light than its plane by its distance from the
+//! receiver: 0.91 instead of 1.16 times the best other technique's mean error in the worst picture (SparseCity, overview,
+//! 2048²). Twice as much leaks at contacts, and gains nothing.
+//!
 //! A pixel is as wide everywhere as in the middle of the picture; towards its rim it is narrower by up to the cosine of
 //! the angle there, which blurs by that much too much.
 //!
@@ -33,6 +38,8 @@ pub struct Pixel {
     pub first: Vec4,
     /// The same for the other two.
     pub second: Vec4,
+    /// By how much either pair is nearer to the light than its plane is, linear light depth.
+    pub lift: Vec2,
     /// What may be read without reading beyond what is drawn, texture coordinates.
     pub low: Vec2,
     /// The same at the other corner.
@@ -61,6 +68,8 @@ pub fn antumbra_spread_pixel(shape: MapShape, view: &ViewUniforms, position: Vec
     let pixel = Pixel {
         first: step(0.375 * wide + 0.125 * long),
         second: step(0.375 * long - 0.125 * wide),
+        lift: Vec2::new((0.375 * wide + 0.125 * long).length(), (0.375 * long - 0.125 * wide).length())
+            * rows[3].xyz().length(),
         low: rect.xy() + half,
         high: rect.zw() - half,
     };
@@ -71,11 +80,11 @@ pub fn antumbra_spread_pixel(shape: MapShape, view: &ViewUniforms, position: Vec
 /// Twin of `antumbra_pixel_tap`: one bilinear comparison of a point of the receiver's plane that is a step away: of u,
 /// v (times w), w, and depth. Where the map does not reach as far it is one of the receiver itself.
 #[must_use]
-pub fn antumbra_pixel_tap(map: &impl CompareMap, look: &Lookup, step: Vec4) -> f32 {
+pub fn antumbra_pixel_tap(map: &impl CompareMap, look: &Lookup, step: Vec4, lift: f32) -> f32 {
     let Spread { w: before, pixel, shape, .. } = look.spread;
     let w = before + step.z;
     let uv = (look.uv * before + step.xy()) / w;
-    let depth = (look.depth / antumbra_law(shape, before) + step.w) * antumbra_law(shape, w);
+    let depth = (look.depth / antumbra_law(shape, before) + step.w - lift) * antumbra_law(shape, w);
     let held = w > 0.5 * before && uv.cmpge(pixel.low).all() && uv.cmple(pixel.high).all();
     let (uv, depth) = if held { (uv, depth) } else { (look.uv, look.depth) };
     map.sample_compare(uv, depth.min(1.0))
@@ -83,7 +92,7 @@ pub fn antumbra_pixel_tap(map: &impl CompareMap, look: &Lookup, step: Vec4) -> f
 
 /// Twin of `antumbra_filter` for [`Pcf::Pixel`](crate::Pcf::Pixel).
 pub(super) fn pixel(map: &impl CompareMap, look: &Lookup) -> f32 {
-    let Pixel { first, second, .. } = look.spread.pixel;
-    let tap = |step| antumbra_pixel_tap(map, look, step);
-    0.25 * (tap(first) + tap(-first) + tap(second) + tap(-second))
+    let Pixel { first, second, lift, .. } = look.spread.pixel;
+    let tap = |step, lift| antumbra_pixel_tap(map, look, step, lift);
+    0.25 * (tap(first, lift.x) + tap(-first, lift.x) + tap(second, lift.y) + tap(-second, lift.y))
 }

@@ -3,4 +3,5 @@
 pub(crate) mod convex;
 pub mod homography;
 pub(crate) mod rectangle;
+pub(crate) mod search;
 pub(crate) mod space;

@@ -38,8 +38,8 @@ use glam::DVec3;
 use super::depth::{MAX_PLANES, Scheme, planes as planes_of};
 use super::profile::{Profile, Section};
 use crate::camera::Camera;
+use crate::math::search::valley;
 use crate::scene::DepthRange;
-use crate::warp::search::valley;
 
 /// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
 const START: f32 = 0.75;

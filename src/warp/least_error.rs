@@ -36,13 +36,13 @@
 use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 
-use super::search::{crossing, least, not_worse, roughly_least};
 use super::sheaf::Sheaf;
 use super::sight::Sight;
 use crate::camera::Camera;
 use crate::focus::FocusBody;
 use crate::math::convex::MAX_VERTICES;
 use crate::math::homography::WarpFrame;
+use crate::math::search::{crossing, least, not_worse, roughly_least};
 
 /// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples
 /// than move the result. Measured: a few hundred samples should decide nearly alone; the body remains for what they

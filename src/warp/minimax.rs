@@ -13,9 +13,9 @@
 //! - Lloyd, Govindaraju, Quammen, Molnar & Manocha, *Logarithmic perspective shadow maps*, 2008: storage and worst
 //!   error.
 
-use super::search::least;
 use super::sight::{Choice, Sight};
 use crate::math::homography::WarpFrame;
+use crate::math::search::least;
 
 /// The strength of least worst footprint, at most κλ = `limit`.
 pub(crate) fn choose(sight: &Sight, limit: f64) -> Choice {

@@ -6,7 +6,6 @@ pub(crate) mod least_error;
 pub(crate) mod lispsm;
 pub(crate) mod minimax;
 pub mod perspective;
-pub(crate) mod search;
 pub(crate) mod sheaf;
 pub(crate) mod sight;
 pub mod trapezoid;

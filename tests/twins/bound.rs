@@ -1,7 +1,7 @@
 //! How far a shader's lookup may be from its twin.
 
 use antumbra::encoding::depth::{Lookup, antumbra_lookup, antumbra_lookup_projective};
-use antumbra::encoding::pixel::antumbra_spread_pixel;
+use antumbra::encoding::pixel::{Pixel, antumbra_spread_pixel};
 use antumbra::encoding::spread::Spread;
 use antumbra::{MapShape, Pcf, ViewUniforms, WgslKey};
 use glam::{Vec3, Vec4};
@@ -134,8 +134,8 @@ pub(crate) fn spread(view: &ViewUniforms, position: Vec3) -> f64 {
 /// receiver and its normal by a few steps of f32 does to them. `None` where rounding decides about everything.
 pub(crate) fn pixel(view: &ViewUniforms, position: Vec3, normal: Vec3, look: &Lookup) -> Option<([f64; 2], f64)> {
     let places = |spread: &Spread| {
-        let steps = [spread.pixel.first, -spread.pixel.first, spread.pixel.second, -spread.pixel.second];
-        steps.map(|step| {
+        let Pixel { first, second, lift, .. } = spread.pixel;
+        [(first, lift.x), (-first, lift.x), (second, lift.y), (-second, lift.y)].map(|(step, lift)| {
             let [before, w] = [spread.w, spread.w + step.z].map(f64::from);
             let [law_before, law] = match spread.shape {
                 MapShape::ProjectiveDepth => [before, w],
@@ -146,7 +146,7 @@ pub(crate) fn pixel(view: &ViewUniforms, position: Vec3, normal: Vec3, look: &Lo
                     .map(|place| place.clamp(-1.0, 2.0));
             }
             let uv = (look.uv.as_dvec2() * before + step.truncate().truncate().as_dvec2()) / w;
-            let depth = (f64::from(look.depth) * law_before + f64::from(step.w)) / law;
+            let depth = (f64::from(look.depth) * law_before + f64::from(step.w) - f64::from(lift)) / law;
             // What lies beyond the map is not read, wherever it is.
             [uv.x, uv.y, depth].map(|place| place.clamp(-1.0, 2.0))
         })

@@ -121,9 +121,9 @@ fn filter_band(filter: Pcf, map: &impl CompareMap, look: &Lookup, uv: [f64; 2], 
     if filter != Pcf::Pixel {
         return band(look, uv, depth, |look| antumbra_filter(filter, map, look));
     }
-    let Pixel { first, second, .. } = look.spread.pixel;
-    let taps = [first, -first, second, -second];
-    let bands = taps.map(|step| band(look, uv, depth, |look| antumbra_pixel_tap(map, look, step)));
+    let Pixel { first, second, lift, .. } = look.spread.pixel;
+    let taps = [(first, lift.x), (-first, lift.x), (second, lift.y), (-second, lift.y)];
+    let bands = taps.map(|(step, lift)| band(look, uv, depth, |look| antumbra_pixel_tap(map, look, step, lift)));
     bands.iter().fold((0.0, 0.0), |(low, high), band| (low + 0.25 * band.0, high + 0.25 * band.1))
 }
 
