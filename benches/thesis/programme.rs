@@ -76,8 +76,8 @@ pub(crate) fn steps() -> Vec<Step> {
         Remix { split: Split::Depth(splits), ..techniques::pssm() }
     };
     let (practical, enough) = (Scheme::Practical { lambda: 0.5, offset: 0.0 }, DepthSplits::DEFAULT.enough);
-    let cascades = techniques::cascades;
-    let filtered = |encoding| Remix { encoding, ..cascades() };
+    let finest = splits(Scheme::EqualError, Select::Finest, enough);
+    let filtered = |encoding| Remix { encoding, ..finest };
     let unfiltered = Remix { encoding: Encoding::default(), grazing: Grazing::Off, ..techniques::smra() };
     vec![
         step(SSM, "", "one map of the whole scene", techniques::ssm()),
@@ -98,23 +98,23 @@ pub(crate) fn steps() -> Vec<Step> {
             "planes of equal predicted error",
             splits(Scheme::EqualError, Select::Depth, enough),
         ),
-        step(
-            "finest",
-            "equal error",
-            "the finest map that holds a receiver",
-            splits(Scheme::EqualError, Select::Finest, enough),
-        ),
-        step(CASCADES, "finest", "the least-error warp for each", cascades()),
-        step("PCF 3×3", CASCADES, "filter: 4 samples over 3×3 texels", filtered(Encoding::Depth(Pcf::Box3x3))),
-        step("variance", CASCADES, "filter: variance", filtered(techniques::vsm().encoding)),
+        step(FINEST, "equal error", "the finest map that holds a receiver", finest),
+        step("PCF 3×3", FINEST, "filter: 4 samples over 3×3 texels", filtered(Encoding::Depth(Pcf::Box3x3))),
+        step("variance", FINEST, "filter: variance", filtered(techniques::vsm().encoding)),
         step(
             "exponential variance",
-            CASCADES,
+            FINEST,
             "filter: exponential variance, 4 numbers",
             filtered(techniques::evsm().encoding),
         ),
-        step("four moments", CASCADES, "filter: four moments", filtered(techniques::msm().encoding)),
-        step(PLUS, CASCADES, "filter: 4 samples over the pixel", techniques::smra_plus()),
+        step("four moments", FINEST, "filter: four moments", filtered(techniques::msm().encoding)),
+        step(PLUS, FINEST, "filter: 4 samples over the pixel", techniques::smra_plus()),
+        step(
+            "warps",
+            PLUS,
+            "the least-error warp for each",
+            Remix { warp: Warp::LeastError, ..techniques::smra_plus() },
+        ),
         step(
             "shared texels",
             PLUS,
@@ -124,7 +124,8 @@ pub(crate) fn steps() -> Vec<Step> {
     ]
 }
 
-pub(crate) const CASCADES: &str = "cascades";
+/// The step that filters are tried on.
+pub(crate) const FINEST: &str = "finest";
 
 /// Which of it all is photographed.
 pub(crate) struct Programme {

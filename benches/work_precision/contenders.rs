@@ -16,7 +16,7 @@ pub(crate) const LARGE: u32 = 2048;
 pub(crate) const FEW: [&str; 3] = ["fsm", "cascades", "smra-plus"];
 
 /// The receiver that others are measured against: nine bilinear comparisons.
-pub(crate) const NINE_TAPS: [&str; 2] = ["cascades pcf5x5", "fsm pcf5x5"];
+pub(crate) const NINE_TAPS: [&str; 2] = ["smra-plus pcf5x5", "fsm pcf5x5"];
 
 /// A technique with an encoding.
 #[derive(Clone, Debug)]
@@ -36,7 +36,8 @@ pub(crate) fn contenders(backend: &Backend) -> Vec<Contender> {
     let nine_taps = Remix { encoding: Encoding::Depth(Pcf::Box5x5), ..techniques::fsm() };
     let soft = Remix { encoding: Encoding::Soft { angle: SUN_ANGLE }, ..techniques::cascades() };
     let over_w = Remix { depth: DepthLaw::Projective, ..techniques::cascades() };
-    let depths = [cascades(Pcf::Box5x5), (NINE_TAPS[1].to_owned(), nine_taps)]
+    let ours = Remix { encoding: Encoding::Depth(Pcf::Box5x5), ..techniques::smra_plus() };
+    let depths = [cascades(Pcf::Box5x5), (NINE_TAPS[0].to_owned(), ours), (NINE_TAPS[1].to_owned(), nine_taps)]
         .into_iter()
         .chain([Pcf::Point, Pcf::Box3x3, Pcf::Box7x7, Pcf::Disc].map(cascades))
         .chain([("cascades pcss".to_owned(), soft), ("cascades depth/w".to_owned(), over_w)]);

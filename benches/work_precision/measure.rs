@@ -44,15 +44,15 @@ impl Effort {
     /// Turn by turn, and apart from all others, filter and receivers of `smra-plus` over those with nine comparisons;
     /// medians, NaN where one of them failed.
     fn nine_taps(&self, studio: &mut Studio, contenders: &[Contender], size: u32) -> [f64; 2] {
-        let [of_cascades, of_one] = NINE_TAPS;
+        let [of_same, of_one] = NINE_TAPS;
         // Each beside its yardstick.
-        let names = [of_cascades, "smra-plus", of_one];
+        let names = [of_same, "smra-plus", of_one];
         let found = names.map(|name| contenders.iter().find(|contender| contender.name == name));
         let drawn: Vec<&dyn ShadowTechnique> = found.iter().flatten().map(|contender| &contender.remix as _).collect();
         let timed = studio.shoot_in_turns(&drawn, size, self.nine_turns[usize::from(size >= LARGE)]);
-        let [Ok(of_cascades), Ok(ours), Ok(of_one)] = &timed[..] else { return [f64::NAN; 2] };
+        let [Ok(of_same), Ok(ours), Ok(of_one)] = &timed[..] else { return [f64::NAN; 2] };
         let ms = |[_, filter, receivers]: &[f64; 3]| filter + receivers;
-        [of_cascades, of_one].map(|theirs| {
+        [of_same, of_one].map(|theirs| {
             let turns = ours.passes.iter().zip(&theirs.passes);
             quantile(&turns.map(|(ours, theirs)| ms(ours) / ms(theirs)).collect::<Vec<_>>(), 0.5)
         })

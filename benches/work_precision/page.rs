@@ -60,8 +60,8 @@ fn words(text: &mut String, effort: &Effort) {
     let _ = writeln!(
         text,
         "## Techniques and encodings\n\n\
-         Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself, four taps over the pixel are \
-         `smra-plus`), and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
+         Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself), \
+         and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
          size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in \
          alternation. Summed-area tables and convolution maps are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
          Medians over the cases of a set:\n\n\
