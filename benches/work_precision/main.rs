@@ -30,13 +30,13 @@ use measure::{Effort, Measured, Session, sets};
 
 /// Turns of the contenders, and those with large maps. Fewer leave quartiles to chance, more take longer than 20 minutes
 /// on two cores.
-const TURNS: [u32; 2] = [5, 3];
+const TURNS: [u32; 2] = [3, 3];
 
 /// Turns of the receivers beside nine comparisons, and those with large maps.
-const NINE_TURNS: [u32; 2] = [9, 5];
+const NINE_TURNS: [u32; 2] = [5, 3];
 
 /// Turns of a race.
-const RACE_TURNS: u32 = 21;
+const RACE_TURNS: u32 = 15;
 
 /// All of them with `--quick`.
 const QUICK_TURNS: u32 = 3;
