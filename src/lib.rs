@@ -80,6 +80,7 @@ mod frame;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod grazing;
+mod key;
 mod light;
 mod light_space;
 mod math;

@@ -6,7 +6,8 @@
 use glam::DVec2;
 
 use crate::fit::view::{Fitter, Texels};
-use crate::frame::{MOST_SOFT, ShadowFrame, ViewUniforms};
+use crate::frame::{ShadowFrame, ViewUniforms};
+use crate::key::MOST_SOFT;
 use crate::report::{Part, Why};
 
 impl Fitter<'_> {
