@@ -187,8 +187,7 @@ fn pcf(key: WgslKey) -> ArrayVec<&'static str, 5> {
         }
     };
     // Stored depths are as linear as the law says.
-    let needs_law = key.filter.reads_depths() || key.filter == Pcf::Pixel;
-    if needs_law && key.shape == MapShape::Affine {
+    if key.filter.reads_depths() && key.shape == MapShape::Affine {
         fragments.push(include_str!("../shaders/law_linear.wgsl"));
     }
     fragments

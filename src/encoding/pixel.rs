@@ -1,4 +1,5 @@
-//! The part of a map that a pixel covers: the Rust twin of `shaders/spread_pixel.wgsl` and `pcf_pixel.wgsl`.
+//! The part of a map that a pixel covers: the Rust twin of `shaders/pixel.wgsl`, `spread_pixel_*.wgsl` and
+//! `pcf_pixel.wgsl`.
 //!
 //! Of texels smaller than pixels one lookup reads one, and misses the others: distant shadows sparkle, and edges are
 //! jagged. Here the pixel is laid on the receiver's plane, s wide and s/|n·d| long for a pixel of size s across the
@@ -17,11 +18,14 @@
 //! - Reeves, Salesin & Cook, *Rendering antialiased shadows with depth maps*, 1987: the region of the map that a pixel
 //!   covers, sampled.
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::depth::{CompareMap, Lookup, antumbra_law};
-use super::spread::{ANTUMBRA_SPREAD_LEAST_W, ANTUMBRA_SPREAD_SMALLEST, Spread};
+use super::spread::{ANTUMBRA_SPREAD_LEAST_W, Spread};
 use crate::frame::{MapShape, ViewUniforms};
+
+/// Twin of the shader's constant: below every square of a length that is divided by.
+const ANTUMBRA_PIXEL_SMALLEST: f32 = 1e-30;
 
 /// Twin of the shader's constant: sine of the angle between normal and line of sight, squared, below which every
 /// direction in the surface is as good.
@@ -46,53 +50,93 @@ pub struct Pixel {
     pub high: Vec2,
 }
 
-/// Twin of `antumbra_spread` for [`Pcf::Pixel`](crate::Pcf::Pixel).
+/// Twin of `antumbra_pixel`: the pixel that shows a receiver, laid on its plane. Offsets from the receiver to two of four
+/// places, and how far they are, world units; the others lie opposite.
+#[must_use]
+pub fn antumbra_pixel(view: &ViewUniforms, position: Vec3, normal: Vec3) -> ([Vec3; 2], Vec2) {
+    let unit_from = |square: f32| 1.0 / square.max(ANTUMBRA_PIXEL_SMALLEST).sqrt();
+    // From the eye, or along the view where that is parallel.
+    let eye = Vec4::from_array(view.moments);
+    let from_eye = position * eye.w - eye.xyz();
+    let sight = from_eye * unit_from(from_eye.dot(from_eye));
+    // An eighth of a pixel on the receiver's plane.
+    let size = 0.125 * Vec4::from_array(view.pixel_from_render).dot(position.extend(1.0));
+    let longer = 1.0 / sight.dot(normal).abs().max(ANTUMBRA_LEAST_FACING);
+    let level = sight.cross(normal);
+    let any =
+        if normal.x.abs() > 0.7 { Vec3::new(-normal.z, 0.0, normal.x) } else { Vec3::new(0.0, normal.z, -normal.y) };
+    let across = if level.dot(level) > ANTUMBRA_HEAD_ON { level } else { any };
+    let wide = across * (size * unit_from(across.dot(across)));
+    let long = normal.cross(wide) * longer;
+    // Four places out of sixteen, of which no two share a row or a column.
+    let stretched = longer * longer;
+    let square = wide.dot(wide) * Vec2::new(9.0 + stretched, 1.0 + 9.0 * stretched);
+    ([3.0 * wide + long, 3.0 * long - wide], Vec2::new(square.x.sqrt(), square.y.sqrt()))
+}
+
+/// Twin of `antumbra_spread` for [`Pcf::Pixel`](crate::Pcf::Pixel). Texts for uniform maps do without w, which is 1.
 #[must_use]
 pub fn antumbra_spread_pixel(shape: MapShape, view: &ViewUniforms, position: Vec3, normal: Vec3) -> Spread {
     let row = Vec4::from_array;
-    // From the eye, or along the view where that is parallel.
-    let eye = row(view.moments);
-    let from_eye = position * eye.w - eye.xyz();
-    let sight = from_eye / from_eye.length().max(ANTUMBRA_SPREAD_SMALLEST);
-    // A pixel on the receiver's plane.
-    let size = row(view.pixel_from_render).dot(position.extend(1.0));
-    let level = sight.cross(normal);
-    let axis = if normal.x.abs() > 0.7 { Vec3::Y } else { Vec3::X };
-    let across = if level.dot(level) > ANTUMBRA_HEAD_ON { level } else { normal.cross(axis) };
-    let wide = across * (size / across.length().max(ANTUMBRA_SPREAD_SMALLEST));
-    let long = normal.cross(wide) / sight.dot(normal).abs().max(ANTUMBRA_LEAST_FACING);
-    // Four places out of sixteen, of which no two share a row or a column.
-    let rows = [view.u_from_render, view.v_from_render, view.w_from_render, view.depth_from_render].map(row);
+    let w_row = if shape == MapShape::Affine { Vec4::W } else { row(view.w_from_render) };
+    let rows = [row(view.u_from_render), row(view.v_from_render), w_row, row(view.depth_from_render)];
     let step = |offset: Vec3| Vec4::from_array(rows.map(|row| row.xyz().dot(offset)));
+    let ([first, second], distance) = antumbra_pixel(view, position, normal);
     let (rect, half) = (row(view.rect), 0.5 * view.bias[3]);
     let pixel = Pixel {
-        first: step(0.375 * wide + 0.125 * long),
-        second: step(0.375 * long - 0.125 * wide),
-        lift: Vec2::new((0.375 * wide + 0.125 * long).length(), (0.375 * long - 0.125 * wide).length())
-            * rows[3].xyz().length(),
+        first: step(first),
+        second: step(second),
+        lift: distance * rows[3].xyz().length(),
         low: rect.xy() + half,
         high: rect.zw() - half,
     };
-    let w = rows[2].dot(position.extend(1.0)).max(ANTUMBRA_SPREAD_LEAST_W);
+    let w = w_row.dot(position.extend(1.0)).max(ANTUMBRA_SPREAD_LEAST_W);
     Spread { w, pixel, shape, ..Spread::default() }
 }
 
-/// Twin of `antumbra_pixel_tap`: one bilinear comparison of a point of the receiver's plane that is a step away: of u,
-/// v (times w), w, and depth. Where the map does not reach as far it is one of the receiver itself.
+/// Where the two taps of [`antumbra_pixel_pair`] are: texture coordinates, and depth.
 #[must_use]
-pub fn antumbra_pixel_tap(map: &impl CompareMap, look: &Lookup, step: Vec4, lift: f32) -> f32 {
-    let Spread { w: before, pixel, shape, .. } = look.spread;
-    let w = before + step.z;
-    let uv = (look.uv * before + step.xy()) / w;
-    let depth = (look.depth / antumbra_law(shape, before) + step.w - lift) * antumbra_law(shape, w);
-    let held = w > 0.5 * before && uv.cmpge(pixel.low).all() && uv.cmple(pixel.high).all();
-    let (uv, depth) = if held { (uv, depth) } else { (look.uv, look.depth) };
-    map.sample_compare(uv, depth.min(1.0))
+pub fn pixel_places(look: &Lookup, step: Vec4, lift: f32) -> [Vec3; 2] {
+    if look.spread.shape == MapShape::Affine {
+        uniform_places(look, step, lift)
+    } else {
+        warped_places(look, step, lift)
+    }
+}
+
+fn uniform_places(look: &Lookup, step: Vec4, lift: f32) -> [Vec3; 2] {
+    let Pixel { low, high, .. } = look.spread.pixel;
+    let room = (look.uv - low).min(high - look.uv);
+    let (by, lift) = if step.xy().abs().cmple(room).all() { (step.xyw(), lift) } else { (Vec3::ZERO, 0.0) };
+    let here = look.uv.extend(look.depth - lift);
+    [here + by, here - by]
+}
+
+fn warped_places(look: &Lookup, step: Vec4, lift: f32) -> [Vec3; 2] {
+    let Spread { w: before, pixel: Pixel { low, high, .. }, shape, .. } = look.spread;
+    let place = |step: Vec4| {
+        let w = before + step.z;
+        let depth = look.depth / antumbra_law(shape, before) + step.w - lift;
+        ((look.uv * before + step.xy()) / w).extend(depth * antumbra_law(shape, w))
+    };
+    let places = [place(step), place(-step)];
+    let [one, other] = places.map(|place| place.xy());
+    let is_near = step.z.abs() < 0.5 * before;
+    let held = is_near && one.min(other).cmpge(low).all() && one.max(other).cmple(high).all();
+    if held { places } else { [look.uv.extend(look.depth); 2] }
+}
+
+/// Twin of `antumbra_pixel_pair`: two bilinear comparisons of points of the receiver's plane, a step to either side: of
+/// u, v (times w), w, and depth; lifted towards the light. Where the map does not reach as far both are of the receiver
+/// itself.
+#[must_use]
+pub fn antumbra_pixel_pair(map: &impl CompareMap, look: &Lookup, step: Vec4, lift: f32) -> f32 {
+    let [one, other] = pixel_places(look, step, lift);
+    map.sample_compare(one.xy(), one.z.min(1.0)) + map.sample_compare(other.xy(), other.z.min(1.0))
 }
 
 /// Twin of `antumbra_filter` for [`Pcf::Pixel`](crate::Pcf::Pixel).
 pub(super) fn pixel(map: &impl CompareMap, look: &Lookup) -> f32 {
     let Pixel { first, second, lift, .. } = look.spread.pixel;
-    let tap = |step, lift| antumbra_pixel_tap(map, look, step, lift);
-    0.25 * (tap(first, lift.x) + tap(-first, lift.x) + tap(second, lift.y) + tap(-second, lift.y))
+    0.25 * (antumbra_pixel_pair(map, look, first, lift.x) + antumbra_pixel_pair(map, look, second, lift.y))
 }

@@ -21,18 +21,28 @@ fn is_disc(key: WgslKey) -> bool {
 }
 
 /// The text of a lookup's struct, with a member that says how taps are spread for filters that need it.
-pub(super) fn map(key: WgslKey, text: &'static str) -> ArrayVec<Cow<'static, str>, 2> {
+pub(super) fn map(key: WgslKey, text: &'static str) -> ArrayVec<Cow<'static, str>, 3> {
     const SLOPE: &str = "    slope: vec2f,\n";
     const SPREAD: &str = "    slope: vec2f,\n    // How taps are spread around it.\n    spread: AntumbraSpread,\n";
     if key.texel != Texel::Depth || !key.filter.is_spread() {
         return core::iter::once(text.into()).collect();
     }
-    let spread = match key.filter {
-        Pcf::Pixel => include_str!("../../shaders/spread_pixel.wgsl"),
-        Pcf::Pcss => include_str!("../../shaders/spread_soft.wgsl"),
+    let mut fragments = ArrayVec::new();
+    if key.filter == Pcf::Pixel {
+        fragments.push(include_str!("../../shaders/pixel.wgsl").into());
+    }
+    fragments.push(spread(key).into());
+    fragments.push(text.replacen(SLOPE, SPREAD, 1).into());
+    fragments
+}
+
+fn spread(key: WgslKey) -> &'static str {
+    match (key.filter, key.shape) {
+        (Pcf::Pixel, MapShape::Affine) => include_str!("../../shaders/spread_pixel_affine.wgsl"),
+        (Pcf::Pixel, _) => include_str!("../../shaders/spread_pixel_projective.wgsl"),
+        (Pcf::Pcss, _) => include_str!("../../shaders/spread_soft.wgsl"),
         _ => include_str!("../../shaders/spread_disc.wgsl"),
-    };
-    [spread.into(), text.replacen(SLOPE, SPREAD, 1).into()].into()
+    }
 }
 
 /// Where a receiver is looked up, with a turn of the disc.
@@ -65,14 +75,18 @@ pub(super) fn noisy(key: WgslKey, text: &'static str, steady: &'static str) -> A
 
 /// A text whose lookups, once their map is found, are spread over the pixel, for the filter that follows it.
 fn over_pixel(key: WgslKey, text: &'static str) -> Cow<'static, str> {
-    const LOOKUPS: [(&str, &str); 2] = [
+    const LOOKUPS: [(&str, &str); 3] = [
         (
-            "antumbra_look(view, position, normal)",
-            "antumbra_over_pixel(view, antumbra_look(view, position, normal), position, normal)",
+            "antumbra_look(view, position, normal))",
+            "antumbra_over_pixel(view, antumbra_look(view, position, normal), position,\n        antumbra_pixel(view, position, normal)))",
+        ),
+        (
+            "antumbra_on_map(view, look)",
+            "antumbra_on_map(view, antumbra_over_pixel(view, look, position,\n        antumbra_pixel(antumbra_uniforms.views[0], position, normal)))",
         ),
         (
             "antumbra_on_map(antumbra_uniforms.views[index], look)",
-            "antumbra_on_map(antumbra_uniforms.views[index],\n        antumbra_over_pixel(antumbra_uniforms.views[index], look, position, normal))",
+            "antumbra_on_map(antumbra_uniforms.views[index],\n                antumbra_over_pixel(antumbra_uniforms.views[index], look, position,\n                    antumbra_pixel(antumbra_uniforms.views[0], position, normal)))",
         ),
     ];
     if key.texel != Texel::Depth || key.filter != Pcf::Pixel {

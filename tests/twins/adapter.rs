@@ -83,7 +83,8 @@ const STEADY: &str = "
 /// How a library whose filter follows the pixel is given a lookup.
 const GIVEN_PIXEL: &str = "
     fn given(case_: Case) -> AntumbraLookup {
-        let spread = antumbra_spread(case_.view, case_.position.xyz, case_.normal.xyz);
+        let pixel = antumbra_pixel(case_.view, case_.position.xyz, case_.normal.xyz);
+        let spread = antumbra_spread(case_.view, case_.position.xyz, pixel);
         return AntumbraLookup(case_.look.xy, case_.look.z, case_.slope_offset.xy, spread); }";
 
 /// Calls of a library whose filter has one.

@@ -5,7 +5,7 @@ use antumbra::encoding::depth::{
     antumbra_look_noisy, antumbra_tap, antumbra_visible_noisy,
 };
 use antumbra::encoding::pcf::antumbra_box_row_of_four;
-use antumbra::encoding::pixel::{Pixel, antumbra_pixel_tap};
+use antumbra::encoding::pixel::{Pixel, pixel_places};
 use antumbra::encoding::spread::antumbra_spread;
 use antumbra::{Pcf, ViewUniforms, WgslKey};
 use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
@@ -123,7 +123,11 @@ fn filter_band(filter: Pcf, map: &impl CompareMap, look: &Lookup, uv: [f64; 2], 
     }
     let Pixel { first, second, lift, .. } = look.spread.pixel;
     let taps = [(first, lift.x), (-first, lift.x), (second, lift.y), (-second, lift.y)];
-    let bands = taps.map(|(step, lift)| band(look, uv, depth, |look| antumbra_pixel_tap(map, look, step, lift)));
+    let tap = |look: &Lookup, step, lift| {
+        let [place, _] = pixel_places(look, step, lift);
+        map.sample_compare(place.truncate(), place.z.min(1.0))
+    };
+    let bands = taps.map(|(step, lift)| band(look, uv, depth, |look| tap(look, step, lift)));
     bands.iter().fold((0.0, 0.0), |(low, high), band| (low + 0.25 * band.0, high + 0.25 * band.1))
 }
 
