@@ -25,8 +25,9 @@ struct AntumbraView {
     // beyond a receiver, and one over the width of the band along the rim in which it gives way.
     domain: vec4f,
     // Maps of moments: texels over a pixel where w is 1, a row; light that is taken for bleeding, last level, lift for
-    // a wider texel of a level as a share of it, half-width of the blur (world units, or texels, negated). Penumbras: world units of radius for each unit of linear light depth
-    // between caster and receiver, widest radius in texels.
+    // a wider texel of a level as a share of it, half-width of the blur (world units, or texels, negated). Penumbras:
+    // world units of radius for each unit of linear light depth between caster and receiver, widest radius in texels.
+    // Filters of the pixel: its size in world units, a row; the eye and 1, or the direction to it and 0.
     pixel_from_render: vec4f,
     moments: vec4f,
 }

@@ -11,7 +11,9 @@ pub struct Camera {
     pub world_from_view: DMat4,
     /// What it sees.
     pub projection: Projection,
-    /// Size of its picture in pixels, each 1 to 65536: errors are predicted in pixels of it, and nothing else uses it.
+    /// Size of its picture in pixels, each 1 to 65536. Errors are predicted in pixels of it, [`Pcf::Pixel`](crate::Pcf)
+    /// filters over them, and the mips of moments are chosen by them: what is drawn in another size is blurred by as
+    /// much too little or too much.
     pub viewport: UVec2,
 }
 
@@ -63,8 +65,8 @@ pub enum ClipDepth {
     Unknown,
 }
 
-/// Picture assumed by constructors that are given none: full HD, the commonest size. Fewer pixels make predictions of
-/// the error smaller, more make them larger; matrices do not depend on it.
+/// Picture assumed by constructors that are given none: full HD, the commonest size. Set [`Camera::viewport`] where
+/// yours has another. Matrices do not depend on it; see there for what does.
 pub const DEFAULT_VIEWPORT: UVec2 = UVec2::new(1920, 1080);
 
 /// How far a camera's axes may be from orthonormal, as the largest entry of `RᵀR − 1`. f32 matrices that were

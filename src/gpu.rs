@@ -185,7 +185,7 @@ impl ShadowMaps {
         })
     }
 
-    /// Uploads a frame: the uniforms of all maps that the key's shader reads (176 bytes each), and each view's matrix.
+    /// Uploads a frame: the uniforms of all maps that the key's shader reads (208 bytes each), and each view's matrix.
     ///
     /// A frame may have fewer views than its key has maps: the others read lit, and their layers need not be drawn.
     /// That of a frame without views is "everything is lit".
@@ -198,6 +198,9 @@ impl ShadowMaps {
             return Err(GpuError::Key { expected: self.key, actual: frame.wgsl });
         }
         let (views, most) = (frame.views.len(), most_views(self.key));
+        if views > 0 && frame.map.side != self.side {
+            return Err(GpuError::FrameSide { side: frame.map.side, expected: self.side });
+        }
         if views > most {
             return Err(GpuError::Views { views, most });
         }
@@ -285,7 +288,8 @@ impl ShadowMaps {
         self.key
     }
 
-    /// Layout of [`bind_group`](Self::bind_group): three bindings from 0 on, visible to fragment shaders.
+    /// Layout of [`bind_group`](Self::bind_group): three bindings from 0 on, visible to vertex and
+    /// fragment shaders.
     /// Engines that merge groups take [`layout_entries`] and [`bind_entries`](Self::bind_entries) instead.
     #[must_use]
     pub fn bind_group_layout(&self) -> &wgpu::BindGroupLayout {

@@ -3,7 +3,7 @@
 use crate::grazing::Grazing;
 use crate::texel::Texel;
 
-/// Which shader text a technique needs. A byte or two; compare it with the key a pipeline was built for.
+/// Which shader text a technique needs: small and plain; compare it with the key a pipeline was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct WgslKey {
     /// What a texel of the map stores that receivers read.
@@ -12,8 +12,8 @@ pub struct WgslKey {
     pub filter: Pcf,
     /// Whether positions are divided by w on their way into the map.
     pub shape: MapShape,
-    /// Most maps of a frame, 1 to [`MAX_VIEWS`](crate::MAX_VIEWS): the length of the uniform array, and the most layers. 1 is a plain
-    /// map, and a shader without arrays or loops.
+    /// Most maps of a frame, 1 to [`MAX_VIEWS`](crate::MAX_VIEWS): the length of the uniform array, and the most
+    /// layers. 1 is a plain map, and a shader without arrays or loops.
     pub maps: u8,
     /// How a receiver finds its map among several; [`Select::Depth`] for one map.
     pub select: Select,

@@ -61,7 +61,7 @@ pub struct Bindings {
     pub first: u32,
 }
 
-/// Number of bindings: the uniforms, the map, the comparison sampler.
+/// Number of bindings: the uniforms, the map, its sampler (one that compares, for maps of depths).
 pub const BINDING_COUNT: u32 = 3;
 
 /// Most fragments of a key.

@@ -44,7 +44,7 @@ const MOST_PIXELS: f64 = 32.0;
 const MOST_EDGE: f64 = 1e3;
 
 /// Most iterations: those of the paper.
-const MOST_ITERATIONS: u32 = 16;
+pub(crate) const MOST_ITERATIONS: u32 = 16;
 
 /// What the passes read: upload verbatim. The layout equals `AntumbraEyeBlur` in the shader, member by member.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -63,15 +63,16 @@ pub struct EyeBlurUniforms {
 }
 
 impl EyeBlur {
-    /// What the passes read, for a camera of that projection (any depth convention, finite or infinite far plane) and a
-    /// picture of `size` pixels.
+    /// What the passes read, for a camera of that projection and a picture of `size` pixels. Depth is as the buffer
+    /// stores it: z of clip space from 0 to w, standard or reversed, with a finite or infinite far plane. (A matrix whose
+    /// z goes from −w to w needs half of the sum of its rows z and w for its row z.)
     ///
     /// # Errors
-    /// A number outside of its range, or a matrix that is not finite.
+    /// A number outside of its range, or a matrix that is not finite in f32.
     pub fn uniforms(&self, clip_from_view: &DMat4, size: UVec2) -> Result<EyeBlurUniforms, FitError> {
         self.validate()?;
         for entry in clip_from_view.to_cols_array() {
-            finite("clip_from_view", entry)?;
+            finite("clip_from_view", f64::from(entry as f32))?;
         }
         let [z, w] = [clip_from_view.row(2), clip_from_view.row(3)];
         let radius = f64::from(self.radius);
@@ -85,7 +86,7 @@ impl EyeBlur {
         })
     }
 
-    /// How many iterations there are.
+    /// Whether every number is in its range.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
         let within = |field, value: f64, low: f64, high: f64, legal| {
             let value = finite(field, value)?;

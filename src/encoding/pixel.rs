@@ -120,7 +120,7 @@ fn warped_places(look: &Lookup, step: Vec4, lift: f32) -> [Vec3; 2] {
         ((look.uv * before + step.xy()) / w).extend(depth * antumbra_law(shape, w))
     };
     let places = [place(step), place(-step)];
-    let [one, other] = places.map(|place| place.xy());
+    let [one, other] = places.map(glam::Vec3Swizzles::xy);
     let is_near = step.z.abs() < 0.5 * before;
     let held = is_near && one.min(other).cmpge(low).all() && one.max(other).cmple(high).all();
     if held { places } else { [look.uv.extend(look.depth); 2] }

@@ -47,7 +47,8 @@ pub enum Bias {
     #[default]
     Automatic,
     /// By hand, for engines that have tuned theirs: the sum of three. The automatic bias is off; only the rounding of
-    /// depths is still accounted for. All of them 0 is no bias.
+    /// depths is still accounted for. All of them 0 is no bias,
+    /// but for the taps of [`Pcf::Pixel`](crate::Pcf), which are always lifted by their distance.
     Manual {
         /// Constant: distance along the light, world units, 0 to 1e9.
         depth_world: f32,

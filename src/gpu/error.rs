@@ -24,6 +24,13 @@ pub enum GpuError {
         /// The device's largest side, texels.
         largest: u32,
     },
+    /// The frame was fitted for maps of another size: its texture coordinates count texels of those.
+    FrameSide {
+        /// Side of the maps that the frame was fitted for, texels.
+        side: u32,
+        /// Side of these maps, texels.
+        expected: u32,
+    },
     /// The frame has more views than the maps have room for.
     Views {
         /// Views of the frame.
@@ -31,7 +38,7 @@ pub enum GpuError {
         /// Most views that the maps hold.
         most: usize,
     },
-    /// A view's rectangle or layer lies outside the maps: they were made for a smaller budget than the frame.
+    /// A view's rectangle or layer lies outside the maps: they were made with fewer layers than the frame has.
     Viewport {
         /// Number of the view.
         view: usize,
@@ -54,6 +61,9 @@ impl fmt::Display for GpuError {
             }
             Self::Side { side, largest } => {
                 write!(f, "map.side is {side}; legal: 1 to {largest} texels on this device")
+            }
+            Self::FrameSide { side, expected } => {
+                write!(f, "frame.map.side is {side}; legal: the side of these maps, {expected} texels")
             }
             Self::Views { views, most } => {
                 write!(f, "frame.views has {views} views; legal: at most {most} in these maps")

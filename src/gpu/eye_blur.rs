@@ -7,7 +7,7 @@ use core::num::NonZeroU64;
 
 use glam::{DMat4, UVec2};
 
-use crate::encoding::eye_blur::{EyeBlur, EyeBlurUniforms};
+use crate::encoding::eye_blur::{EyeBlur, EyeBlurUniforms, MOST_ITERATIONS};
 use crate::error::FitError;
 
 /// Format in which the term is kept between passes: what every adapter draws, in one channel, and rounds to nothing
@@ -92,20 +92,21 @@ impl ScreenBlur {
         Ok(())
     }
 
-    /// Records two passes for each of `iterations`, of which there is at least one. `stamps` gives the timestamps of a
-    /// pass, by its number and their count.
+    /// Records two passes for each of `blur.iterations` (1 to 16; what is given beyond is taken for the nearer end).
+    /// Everything else of it is as it was at [`prepare`](Self::prepare). `stamps` gives the timestamps of a pass, by
+    /// its number and their count.
     pub fn blur<'a>(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         views: &ScreenBlurViews,
-        iterations: u32,
+        blur: &EyeBlur,
         stamps: &mut dyn FnMut(usize, usize) -> Option<wgpu::RenderPassTimestampWrites<'a>>,
     ) {
         let [across, down] = &self.between;
         let [source, across_group, down_group] =
             [views.source, across, down].map(|view| self.group(device, view, views.depth));
-        let last = iterations.max(1) - 1;
+        let last = blur.iterations.clamp(1, MOST_ITERATIONS) - 1;
         let count = 2 * (last as usize + 1);
         for iteration in 0..=last {
             let first = 2 * iteration as usize;

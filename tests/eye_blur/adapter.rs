@@ -136,7 +136,7 @@ fn passes_agree_with_their_twin() {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let views = ScreenBlurViews { source: &source, depth: &depth_view, target: &target };
         let mut counted = Vec::new();
-        passes.blur(gpu.device(), &mut encoder, &views, iterations, &mut |pass, count| {
+        passes.blur(gpu.device(), &mut encoder, &views, &settings, &mut |pass, count| {
             counted.push((pass, count));
             None
         });

@@ -246,10 +246,16 @@ fn misfits_are_errors() {
     let error = maps.prepare(stage.gpu.queue(), &other).unwrap_err();
     assert_eq!(error, GpuError::Key { expected: frame.wgsl, actual: other.wgsl });
     assert!(error.to_string().contains("Box3x3") && error.to_string().contains("Hardware2x2"), "{error}");
-    // Size.
-    let small = stage.maps(&frame, 128);
-    let error = small.prepare(stage.gpu.queue(), &frame).unwrap_err();
-    assert!(matches!(error, GpuError::Viewport { side: 128, .. }), "{error}");
+    // Size: texture coordinates of the frame would count other texels, in larger maps as well.
+    for side in [128, 512] {
+        let error = stage.maps(&frame, side).prepare(stage.gpu.queue(), &frame).unwrap_err();
+        assert_eq!(error, GpuError::FrameSide { side: 256, expected: side });
+        assert!(error.to_string().contains("256; legal: the side of these maps"), "{error}");
+    }
+    let mut outside = frame.clone();
+    outside.views[0].viewport.x = 100;
+    let error = maps.prepare(stage.gpu.queue(), &outside).unwrap_err();
+    assert!(matches!(error, GpuError::Viewport { side: 256, .. }), "{error}");
     let none = ShadowMapsDescriptor { label: None, key: frame.wgsl, map: MapBudget::one(0) };
     let error = ShadowMaps::new(stage.gpu.device(), &none).unwrap_err();
     assert!(error.to_string().starts_with("map.side is 0; legal: 1 to "), "{error}");
