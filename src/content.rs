@@ -6,6 +6,8 @@
 
 use glam::{DVec2, DVec3, IVec2, UVec2};
 
+use crate::texel::{BlurUniforms, Texel};
+
 /// What an engine has to draw of a map whose casters have not moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Content {
@@ -39,6 +41,26 @@ pub(crate) struct Place {
     pub(crate) uniform: bool,
     /// Last level of the mip chain that is read.
     pub(crate) levels: f32,
+    /// What its texels are made of.
+    pub(crate) made: Made,
+}
+
+/// What the texels of a map are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Made {
+    /// What they store.
+    texel: Texel,
+    /// Half-width and shape of the blur, as its passes know them.
+    radius: f32,
+    bell: u32,
+}
+
+impl Made {
+    /// By the passes of a blur. Sums are of all texels, however wide they are read.
+    pub(crate) fn by(texel: Texel, blur: &BlurUniforms) -> Self {
+        let is_summed = matches!(texel, Texel::Moments(moments) if moments.is_summed());
+        Self { texel, radius: if is_summed { 0.0 } else { blur.radius }, bell: blur.bell }
+    }
 }
 
 impl Place {
@@ -51,6 +73,7 @@ impl Place {
         tile: Tile::whole(0, 0),
         uniform: false,
         levels: 0.0,
+        made: Made { texel: Texel::Depth, radius: 0.0, bell: 0 },
     };
 }
 
@@ -94,7 +117,7 @@ impl Content {
         let depths = now.depth.iter().zip(before.depth).all(|(now, before)| close(*now, before, SAME * range));
         let same = now.uniform && before.uniform && now.axes == before.axes && now.tile == before.tile && depths;
         // Levels that were not read may not have been made.
-        let same = same && now.levels <= before.levels;
+        let same = same && now.levels <= before.levels && now.made == before.made;
         // The far side of the map is off by as many parts of a texel as there are texels.
         let texels = (now.texel - before.texel).abs() * f64::from(now.tile.side);
         if !same || texels.cmpgt(now.texel * SAME).any() {
@@ -126,7 +149,7 @@ mod tests {
             depth: [0.0, 50.0],
             tile: Tile::whole(0, 512),
             uniform: true,
-            levels: 0.0,
+            ..Place::UNKNOWN
         }
     }
 

@@ -87,16 +87,18 @@ impl FocusBody {
             near: near.min(depth),
             far: far.max(depth),
         };
-        let depths = self.vertices.iter().map(|vertex| camera.eye_depth(*vertex, origin));
+        let (eye, forward) = (camera.eye() - origin, depth_from_view(camera));
+        let depths = self.vertices.iter().map(|vertex| (*vertex - eye).dot(forward));
         let DepthRange { near, far } = depths.fold(range, grown);
-        // Rounding may put vertices before the eye.
-        DepthRange { near: near.max(self.depth.near), far: far.min(self.depth.far) }
+        // Rounding may put vertices before the eye, and all of them beyond either end.
+        let within = |depth: f64| depth.max(self.depth.near).min(self.depth.far);
+        DepthRange { near: within(near), far: within(far) }
     }
 
     /// The part of a body in view between two eye depths; `None` where there is nothing.
     pub(crate) fn slice(&self, camera: &Camera, depth: DepthRange, origin: DVec3) -> Option<Self> {
         let mut slice = Self::new(self.convex.clone(), depth);
-        let forward = camera.forward();
+        let forward = depth_from_view(camera);
         let eye = forward.dot(camera.eye() - origin);
         slice.convex.clip(forward.extend(-eye - depth.near));
         slice.convex.clip((-forward).extend(eye + depth.far));
@@ -142,6 +144,14 @@ fn nothing_in(scene: &Scene) -> Result<(), LeftOut> {
 fn camera_depth(camera: &Camera) -> DepthRange {
     let (near, far) = camera.projection.depth_range();
     DepthRange { near, far }
+}
+
+/// What the eye depth of a point grows by with its position: the row of the camera's inverse. The engine's own depths
+/// are by that, and cameras are not quite rigid, by what f32 loses of them or by a scale.
+fn depth_from_view(camera: &Camera) -> DVec3 {
+    let [right, up, back] = [0, 1, 2].map(|axis| camera.world_from_view.col(axis).truncate());
+    let across = right.cross(up);
+    across / -across.dot(back)
 }
 
 /// The camera's depth range, cut to what the scene says is visible.

@@ -125,9 +125,12 @@ impl ShadowTechnique for Remix {
             }
             split => {
                 let fitter = Fitter { texels: fitter.texels_for(&body, input.map.side), ..fitter };
+                let said = frame.left_out.len();
                 let layout = fitter.lay_out(&mut body, &mut frame);
                 if let Err(why) = fitter.view(&body, &layout, &mut frame) {
+                    frame.left_out.truncate(said);
                     frame.leave_out(Part::Light, why);
+                    return Ok(frame);
                 }
                 // A map of the whole scene is the same for every slice.
                 (1..split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{FitError, coordinate};
+use crate::error::{FitError, LARGEST, coordinate};
 
 /// An axis-aligned box, world space. A box may be flat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,9 +92,9 @@ pub struct Object {
 /// A range of eye depths, world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    /// Nearest eye depth.
+    /// Nearest eye depth, ±1e15.
     pub near: f64,
-    /// Farthest eye depth, not less than `near`; may be infinite.
+    /// Farthest eye depth, not less than `near`; at most 1e15, or infinite.
     pub far: f64,
 }
 
@@ -130,6 +130,10 @@ impl Scene<'_> {
         }
         let Some(DepthRange { near, far }) = self.visible_depth else { return Ok(()) };
         coordinate("scene.visible_depth.near", near)?;
+        if far > LARGEST && far < f64::INFINITY {
+            let (field, legal) = ("scene.visible_depth.far", "-1e15 to 1e15, or infinity");
+            return Err(FitError::OutOfRange { field, value: far, legal });
+        }
         if far.is_nan() {
             return Err(FitError::NotFinite { field: "scene.visible_depth.far", value: far });
         }

@@ -1,8 +1,9 @@
 //! Bugs, verbatim: the input that showed each, and one sentence.
 
 use antumbra::{
-    Aabb, Bias, Camera, DepthRange, FitError, FitInput, Light, MapBudget, Object, Part, Remix, Scene, ShadowFrame,
-    ShadowTechnique, Stabilise, Why, techniques,
+    Aabb, Bias, Camera, Content, DepthRange, DepthSplits, Encoding, FitError, FitInput, Light, MapBudget, MomentFormat,
+    MomentKind, Moments, Object, Part, Pcf, Prefilter, Radius, Remix, Scene, Scheme, ShadowFrame, ShadowTechnique,
+    Share, Split, Stabilise, Warp, Why, techniques,
 };
 use glam::{DMat4, DVec3};
 
@@ -270,5 +271,155 @@ fn casters_at_the_rim_far_out_are_kept() {
             let caster = receiver - travel * f64::from(step) * 0.017;
             assert!(frame.views[0].cull.may_cast(&Aabb::new(caster, caster)), "{stabilise:?} {caster}");
         }
+    }
+}
+
+fn cascade_map() -> MapBudget {
+    MapBudget { side: 1024, layers: 4, views: 4 }
+}
+
+/// A camera of f32 numbers is as far from rigid as f32 is: depths of its body lay a rounding beyond the visible ones,
+/// whose ends then were out of order, and `fit` panicked.
+#[test]
+fn cameras_of_f32_do_not_panic() {
+    let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into()).extend(0.0);
+    let world_from_view =
+        DMat4::from_cols(column(0.8, 0.0, -0.6), column(0.0, 1.0, 0.0), column(0.6, 0.0, 0.8), glam::DVec4::W);
+    let visible_depth = Some(DepthRange { near: 10.0, far: 10.0 });
+    let mut input = input(Scene { visible_depth, ..Scene::within(room(100.0)) });
+    input.camera.world_from_view = world_from_view;
+    input.map = cascade_map();
+    for remix in [techniques::cascades(), techniques::smra_plus()] {
+        let frame = remix.fit(&input).unwrap();
+        assert_eq!(frame.views.len(), 1, "{:?}", frame.left_out);
+    }
+}
+
+/// "No limit" as the largest f64, and a frustum without end: corners overflowed, the body collapsed onto the near plane,
+/// and all shadows were lost without a word.
+#[test]
+fn visible_depths_beyond_all_worlds_are_refused() {
+    let fit = |far: f64| {
+        let visible_depth = Some(DepthRange { near: 0.1, far });
+        let mut input = input(Scene { visible_depth, ..Scene::within(room(300.0)) });
+        input.camera = Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, 0.1, f64::INFINITY);
+        techniques::fsm().fit(&input)
+    };
+    for far in [f64::MAX, 1.1e15] {
+        let error = fit(far).unwrap_err();
+        assert!(matches!(error, FitError::OutOfRange { field: "scene.visible_depth.far", .. }), "{error}");
+        assert!(error.to_string().contains("infinity"), "{error}");
+    }
+    // What is legal and without end shadows the same receivers.
+    let [far, endless] = [1e15, f64::INFINITY].map(|far| fit(far).unwrap().views[0].domain[1]);
+    assert!((300.0..310.0).contains(&far) && (300.0..310.0).contains(&endless), "{far} {endless}");
+}
+
+/// A map whose blur had changed was said to be unchanged: both blurs read two texels to either side.
+#[test]
+fn maps_of_another_filter_are_drawn_again() {
+    let fit = |encoding, previous: Option<&ShadowFrame>| {
+        let remix = Remix { encoding, stabilise: Stabilise::SnapTexels, ..techniques::msm() };
+        let scene = Scene { visible_depth: Some(DepthRange { near: 0.1, far: 20.0 }), ..Scene::within(room(300.0)) };
+        remix.fit(&FitInput { previous, ..input(scene) }).unwrap()
+    };
+    let moments = |format, radius, bell, dark| {
+        let moments = Moments::new(MomentKind::Hamburger, format);
+        Encoding::Moments(Prefilter { moments, radius, bell, dark })
+    };
+    let of = |radius| moments(MomentFormat::Float32, radius, false, 0.0);
+    let [narrow, wide] = [1.6, 2.4].map(|radius| of(Radius::Texels(radius)));
+    let content = |from, to| fit(to, Some(&fit(from, None))).views[0].content;
+    assert_eq!(content(narrow, narrow), Content::Unchanged);
+    assert_eq!(content(narrow, wide), Content::Redraw);
+    let [narrow, wide] = [0.02, 0.021].map(|radius| of(Radius::World(radius)));
+    assert_eq!((content(narrow, narrow), content(narrow, wide)), (Content::Unchanged, Content::Redraw));
+    let [sharp, depths] = [of(Radius::Texels(0.5)), Encoding::Depth(Pcf::Hardware2x2)];
+    assert_eq!((content(depths, sharp), content(sharp, depths)), (Content::Redraw, Content::Redraw));
+    let bell = moments(MomentFormat::Float32, Radius::Texels(1.0), true, 0.0);
+    assert_eq!(content(of(Radius::Texels(1.4)), bell), Content::Redraw);
+    // What is read alone changes no texel: how dark it is, and how wide a box of sums.
+    let darker = moments(MomentFormat::Float32, Radius::Texels(1.6), false, 0.1);
+    assert_eq!(content(of(Radius::Texels(1.6)), darker), Content::Unchanged);
+    let [narrow, wide] = [1.6, 2.4].map(|radius| moments(MomentFormat::Summed, Radius::Texels(radius), false, 0.0));
+    assert_eq!(content(narrow, wide), Content::Unchanged);
+    assert_eq!(content(of(Radius::Texels(1.6)), narrow), Content::Redraw);
+}
+
+/// Views that do not exist were said to serve: where nothing casts, there is none.
+#[test]
+fn no_view_serves_where_there_is_none() {
+    let objects = [Object { bounds: room(1.0), casts: false }];
+    let scene = Scene { objects: &objects, ..Scene::within(room(30.0)) };
+    let splits = Split::Depth(DepthSplits::DEFAULT);
+    let whole = Remix { split: splits, warp: Warp::Uniform, ..Remix::default() };
+    let frame = whole.fit(&FitInput { map: cascade_map(), ..input(scene) }).unwrap();
+    assert_eq!(whys(&frame), [(Part::Light, Why::NothingCastsHere)]);
+    // One layer for all maps, the first of which turns out to be one of the whole scene, twice.
+    let mut input = input(Scene { objects: &objects, ..Scene::within(room(3.0)) });
+    input.camera.world_from_view = DMat4::from_translation(DVec3::new(0.0, 0.0, 30.0));
+    input.light = Light::Directional { travel: DVec3::new(0.14, 0.0, -1.0).normalize() };
+    input.map = MapBudget { layers: 1, ..cascade_map() };
+    for (share, stabilise) in [
+        (Share::LeastError, Stabilise::Off),
+        (Share::Equal, Stabilise::Off),
+        (Share::LeastError, Stabilise::SnapTexels),
+    ] {
+        let warp = Warp::Focused;
+        let splits = Split::Depth(DepthSplits { scheme: Scheme::Uniform, enough: 0.0, ..DepthSplits::DEFAULT });
+        let frame = Remix { split: splits, warp, share, stabilise, ..Remix::default() }.fit(&input).unwrap();
+        assert!(frame.views.is_empty() && !frame.left_out.is_empty());
+        let said = whys(&frame);
+        assert!(!said.iter().any(|(_, why)| matches!(why, Why::ServedBy { .. })), "{said:?}");
+        // Nor does anything speak of a view.
+        assert!(said.iter().all(|(part, _)| matches!(part, Part::Light | Part::Split(_))), "{said:?}");
+    }
+}
+
+/// Samples of last year, all of them behind the eye: the error of all maps was predicted to be 0.
+#[test]
+fn stale_samples_do_not_make_maps_perfect() {
+    let fit = |visible_points: &[DVec3], visible_depth| {
+        let scene = Scene { visible_points, visible_depth, ..Scene::within(room(100.0)) };
+        let frame = techniques::cascades().fit(&FitInput { map: cascade_map(), ..input(scene) }).unwrap();
+        assert!(!frame.views.is_empty());
+        frame.predicted.error
+    };
+    let none = fit(&[], None);
+    let stale = fit(&[DVec3::new(0.0, 0.0, 50.0)], None);
+    assert!(none > 0.0 && (stale / none - 1.0).abs() < 0.2, "{stale}, without samples {none}");
+    // Nor do depths without a range.
+    assert!(fit(&[], Some(DepthRange { near: 10.0, far: 10.0 })) > 0.0);
+}
+
+/// A slope given by hand had what the automatic one does for blurs, and for levels, added to it.
+#[test]
+fn manual_bias_of_moments_is_what_it_says() {
+    let fit = |encoding, slope_texels| {
+        let bias = Bias::Manual { depth_world: 0.0, slope_texels, normal_texels: 0.0 };
+        let scene = Scene { visible_depth: Some(DepthRange { near: 0.1, far: 20.0 }), ..Scene::within(room(300.0)) };
+        Remix { bias, encoding, ..techniques::fsm() }.fit(&input(scene)).unwrap().uniforms.views[0]
+    };
+    let radius = Radius::Texels(8.0);
+    let Encoding::Moments(prefilter) = techniques::msm().encoding else { panic!("msm has moments") };
+    for slope in [0.0, 1.0, 2.5] {
+        let (depths, moments) =
+            (fit(Encoding::default(), slope), fit(Encoding::Moments(Prefilter { radius, ..prefilter }), slope));
+        assert_eq!(moments.bias[0], depths.bias[0], "slope {slope}");
+        assert_eq!(moments.moments[2], 0.0, "slope {slope}");
+    }
+}
+
+/// A near plane so close that f64 has no ratio for it: planes were NaN, so that a frame differed from itself.
+#[test]
+fn the_nearest_near_planes_have_splits() {
+    for near in [1e-300, f64::MIN_POSITIVE, 5e-324] {
+        let mut input = input(Scene::within(room(2e9)));
+        input.camera = Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, near, 1e9);
+        input.map = cascade_map();
+        let frame = techniques::cascades().fit(&input).unwrap();
+        let again = techniques::cascades().fit(&FitInput { previous: Some(&frame), ..input }).unwrap();
+        assert!(again == techniques::cascades().fit(&FitInput { previous: Some(&frame), ..input }).unwrap());
+        assert!(frame == techniques::cascades().fit(&input).unwrap(), "near {near:e}");
     }
 }

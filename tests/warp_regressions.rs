@@ -2,6 +2,7 @@
 
 use antumbra::{
     Aabb, Camera, FitInput, Focus, Light, MapBudget, Projection, Remix, Scene, ShadowFrame, ShadowTechnique, Warp,
+    techniques,
 };
 use glam::{DMat3, DMat4, DVec3, Vec4};
 
@@ -210,4 +211,26 @@ fn the_guard_measures_all_methods_alike() {
             assert!(guarded <= none * 1.0001, "shift {shift}, {focus:?}: {guarded}, without {none}");
         }
     }
+}
+
+/// What f32 loses of places a thousand kilometres away is more than a near plane of a centimetre: the nearest slice
+/// began behind the eye, no ray had any part of it, and its map went without a warp and without a word.
+#[test]
+fn nearest_slices_of_vast_views_are_warped() {
+    let eye = DVec3::new(0.0, 2.0, 0.0);
+    let fit = |near: f64| {
+        let world_from_view = Camera::look_at(eye, DVec3::new(0.0, 1.8, -1.0), DVec3::Y);
+        let camera = Camera::perspective(world_from_view, 1.0, 1.5, near, 1e6);
+        let ground = [[-1e6, 0.0, -1e6], [1e6, 50.0, 1e6]];
+        let input = FitInput {
+            map: MapBudget { side: 1024, layers: 4, views: 4 },
+            origin: eye,
+            ..input(camera, [0.6, -0.8, 0.0], ground, ground, 1024)
+        };
+        techniques::cascades().fit(&input).unwrap()
+    };
+    let [near, far] = [0.01, 2.0].map(fit);
+    let strengths = |frame: &ShadowFrame| frame.views.iter().map(|view| view.warp_strength).collect::<Vec<_>>();
+    println!("near 0.01: {:?}, near 2: {:?}", strengths(&near), strengths(&far));
+    assert!(far.views[0].warp_strength > 0.5 && near.views[0].warp_strength > 0.5);
 }

@@ -46,9 +46,9 @@ pub enum Bias {
     /// From the texel size, the reach of the filter and the precision of positions. Bounded; needs no tuning.
     #[default]
     Automatic,
-    /// By hand, for engines that have tuned theirs: the sum of three. The automatic bias is off; only the rounding of
-    /// depths is still accounted for. All of them 0 is no bias,
-    /// but for the taps of [`Pcf::Pixel`](crate::Pcf), which are always lifted by their distance.
+    /// By hand, for engines that have tuned theirs: the sum of three. The automatic bias is off, that of wide blurs and
+    /// of mip levels as well; only the rounding of depths is still accounted for. All of them 0 is no bias, but for the
+    /// taps of [`Pcf::Pixel`](crate::Pcf), which are always lifted by their distance.
     Manual {
         /// Constant: distance along the light, world units, 0 to 1e9.
         depth_world: f32,

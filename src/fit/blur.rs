@@ -6,6 +6,7 @@ use glam::{DMat3, DVec2, DVec3, DVec4};
 use crate::content::Tile;
 use crate::encoding::blur::antumbra_blur_reach;
 use crate::encoding::stage::{Encoding, Prefilter, Radius};
+use crate::fit::bias::Bias;
 use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::{Fitter, Texels};
 use crate::focus::FocusBody;
@@ -97,7 +98,7 @@ impl Fitter<'_> {
             Radius::Texels(radius) => f64::from(radius),
             Radius::World(radius) => f64::from(radius) / texel.min_element(),
         };
-        uniforms.bias[0] += (prefilter.lifted() * widest.min(f64::from(texels.kernel()))) as f32;
+        uniforms.bias[0] += (self.lifted(prefilter) * widest.min(f64::from(texels.kernel()))) as f32;
         uniforms.moments[3] = radius;
         self.write_level(prefilter, placed, uniforms, frame);
         let corner = self.tile.corner;
@@ -112,6 +113,11 @@ impl Fitter<'_> {
             first_term: 0,
             stride: 1,
         }
+    }
+
+    /// How far receivers are lifted for a blur, as a share of its radius: not at all where that is done by hand.
+    fn lifted(&self, prefilter: &Prefilter) -> f64 {
+        if self.bias == Bias::Automatic { prefilter.lifted() } else { 0.0 }
     }
 
     /// Which level of the mip chain is read: texels over a pixel, linear in position for perspective views. Levels in
@@ -139,7 +145,7 @@ impl Fitter<'_> {
         } else if levels > 0 {
             frame.leave_out(Part::Levels(self.index), Why::TexelsAreLarger { texels });
         }
-        uniforms.moments = [prefilter.dark, read as f32, prefilter.lifted() as f32, uniforms.moments[3]];
+        uniforms.moments = [prefilter.dark, read as f32, self.lifted(prefilter) as f32, uniforms.moments[3]];
     }
 
     /// Last level in which the tile is whole texels: beyond it they are shared with other maps.

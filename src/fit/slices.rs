@@ -19,6 +19,10 @@ use crate::split::depth::DepthSplits;
 /// there.
 const NO_RIM: f32 = -1e30;
 
+/// Least length of a range of eye depths that is weighed, world units: below all that f64 tells apart, above all whose
+/// product with an error vanishes.
+const LEAST_LENGTH: f64 = 1e-200;
+
 impl Fitter<'_> {
     /// Cuts a body in view into slices, shares the texels out among them, lays each out, and appends their views.
     ///
@@ -36,8 +40,14 @@ impl Fitter<'_> {
             served = cuts.slices.drain(whole + 1..).chain(served).collect();
             cuts.slices[whole].depth.far = last;
         }
-        let view = (frame.views.len() as u8).saturating_sub(1);
-        served.iter().for_each(|next| frame.leave_out(Part::Split(next.split), Why::ServedBy { view }));
+        // That map, the last one; or why there is none.
+        let whole = cuts.slices.last().map(|cut| cut.split);
+        let last = frame.views.last().filter(|view| Some(view.split) == whole);
+        let why = match last {
+            Some(_) => Why::ServedBy { view: frame.views.len() as u8 - 1 },
+            None => frame.left_out.last().map_or(Why::NothingCastsHere, |cut| cut.why),
+        };
+        served.iter().for_each(|next| frame.leave_out(Part::Split(next.split), why));
         self.finish(splits, range, frame);
     }
 
@@ -68,12 +78,14 @@ impl Fitter<'_> {
             let tile = tiles.get(number).copied().unwrap_or(Tile::whole(index.into(), self.tile.of));
             let texels = self.texels_for(&slice, tile.side);
             let fitter = Self { index, tile, texels, split: cut.split, ..*self };
+            let said = frame.left_out.len();
             let layout = fitter.lay_out(&mut slice, frame);
             let followed = number + 1 < slices.len();
             if layout.whole && followed && tile.side < tile.of {
                 return Some(number);
             }
             if let Err(why) = fitter.view(&slice, &layout, frame) {
+                frame.left_out.truncate(said);
                 frame.leave_out(Part::Split(cut.split), why);
                 continue;
             }
@@ -158,21 +170,22 @@ impl Fitter<'_> {
         frame.predicted = predicted;
     }
 
-    /// How much is seen in the depths of each view: samples, or where none are given, depths. O(samples · views).
+    /// How much is seen in the depths of each view: samples, or where there are none in any, depths.
+    /// O(samples · views).
     fn seen_by_view(&self, range: DepthRange, frame: &ShadowFrame) -> [f64; MAX_VIEWS] {
         let domains = frame.uniforms.views.each_ref().map(|view| [view.domain[0], view.domain[1]].map(f64::from));
-        let samples = self.input.scene.visible_points;
-        if samples.is_empty() {
-            return domains.map(|[near, far]| far.min(range.far) - near);
-        }
         let mut seen = [0.0; MAX_VIEWS];
-        for sample in samples {
+        let mut none = true;
+        for sample in self.input.scene.visible_points {
             let depth = self.input.camera.eye_depth(*sample, glam::DVec3::ZERO);
             let view = domains[..frame.views.len()].iter().position(|[near, far]| (*near..*far).contains(&depth));
             if let Some(view) = view {
                 seen[view] += 1.0;
+                none = false;
             }
         }
-        seen
+        // Where depths have no range, all views are one point.
+        let length = |[near, far]: [f64; 2]| (far.min(range.far) - near).max(LEAST_LENGTH);
+        if none { domains.map(length) } else { seen }
     }
 }

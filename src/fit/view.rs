@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, DVec4, UVec4};
 
 use crate::aliasing::extremes;
-use crate::content::{Content, Place, Tile};
+use crate::content::{Content, Made, Place, Tile};
 use crate::encoding::stage::Encoding;
 use crate::fit::bias::{Bias, BiasInput};
 use crate::fit::blur::Placed;
@@ -172,7 +172,11 @@ impl Fitter<'_> {
             domain: extremes.domain,
             content: Content::Redraw,
             blur,
-            place: Place { levels: self.encoding.levels(&uniforms), ..self.place(window, texel, depth) },
+            place: Place {
+                levels: self.encoding.levels(&uniforms),
+                made: Made::by(frame.wgsl.texel, &blur),
+                ..self.place(window, texel, depth)
+            },
             split: self.split,
         };
         let before = input.previous.and_then(|before| before.views.get(usize::from(self.index)));
@@ -240,7 +244,7 @@ impl Fitter<'_> {
             depth: [depth.near + origin.z, depth.far + origin.z],
             tile: self.tile,
             uniform: window.bend.is_none(),
-            levels: 0.0,
+            ..Place::UNKNOWN
         }
     }
 

@@ -98,7 +98,8 @@ struct Plane {
 
 /// Length of a range in the logarithm of depth; in depth where it has none.
 fn span(DepthRange { near, far }: DepthRange) -> f64 {
-    if near > 0.0 { (far / near).ln() } else { far - near }
+    // The nearest near planes have a ratio beyond f64.
+    if near > 0.0 { (far / near).min(f64::MAX).ln() } else { far - near }
 }
 
 impl<'a> Cost<'a> {

@@ -18,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
 use crate::focus::FocusBody;
+use crate::scene::DepthRange;
 
 /// Rays across and down the part of the picture that the body covers. Twice as many in each direction move the chosen
 /// strength by a hundredth and cost a microsecond; half as many make it jump where a ray leaves the body.
@@ -73,7 +74,9 @@ impl Sheaf {
         let steps = [right, down].map(|next| [next[0] - first[0], next[1] - first[1]]);
         // Between the depths of the body, and inside its walls.
         let inverse = camera.projection.spreads();
-        let (near, far) = (body.depth.near, body.depth.far);
+        // Slices begin before their planes by what f32 loses: behind the eye, where 1/ζ says nothing.
+        let DepthRange { near, far } = body.depth;
+        let near = if inverse { near.max(camera.projection.depth_range().0) } else { near };
         let [least, greatest] = if inverse { [1.0 / far, 1.0 / near] } else { [near, far] };
         let mut sheaf = Self { first, steps, low: [least; ALL], high: [greatest; ALL], inverse };
         let eye = camera.eye() - origin;

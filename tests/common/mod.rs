@@ -13,7 +13,7 @@ use antumbra::{
     Aabb, Camera, DepthRange, FitInput, Light, MapBudget, Object, Projection, Remix, Scene, ShadowFrame,
     ShadowTechnique,
 };
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -168,6 +168,13 @@ fn points() -> impl Strategy<Value = Vec<([f64; 3], f64)>> {
     ]
 }
 
+/// What a camera's rotation is off by: nothing, or as much scale and shear as it may be; and whether it is of f32.
+fn skew() -> impl Strategy<Value = (DMat3, bool)> {
+    let skew =
+        prop::array::uniform9(-2.4e-4..=2.4e-4_f64).prop_map(|off| DMat3::IDENTITY + DMat3::from_cols_array(&off));
+    (prop_oneof![3 => Just(DMat3::IDENTITY), 1 => skew], any::<bool>())
+}
+
 /// Everything but the boxes, which lie about what the camera sees.
 #[derive(Clone, Debug)]
 struct Stage {
@@ -188,15 +195,14 @@ fn stage() -> impl Strategy<Value = Stage> {
     // Render space around the world's origin, the eye, or somewhere near the scene.
     let offset = (direction(), -3.0..5.0_f64).prop_map(|(to, log)| to * 10.0_f64.powf(log));
     let focus = prop::array::uniform3(0.0..1.0_f64);
-    let rest = ((0..3_u8, offset), focus, points());
+    let rest = ((0..3_u8, offset), focus, points(), skew());
     (place, (direction(), direction()), light(), projection(), visible, 0..15_u32, rest).prop_map(
-        |(distance, (to, view), (light, along, off), projection, visible, log_side, (origin, focus, points))| {
+        |(distance, (to, view), (light, along, off), projection, visible, log_side, (origin, focus, points, skew))| {
             let eye = to * distance;
-            let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, view);
-            let camera = Camera {
-                projection,
-                ..Camera::perspective(DMat4::from_rotation_translation(rotation, eye), 1.0, 1.0, 1.0, 2.0)
-            };
+            let rotation = DMat3::from_quat(DQuat::from_rotation_arc(DVec3::NEG_Z, view)) * skew.0;
+            let rotation = if skew.1 { rotation.as_mat3().as_dmat3() } else { rotation };
+            let world_from_view = DMat4::from_mat3_translation(rotation, eye);
+            let camera = Camera { projection, ..Camera::perspective(world_from_view, 1.0, 1.0, 1.0, 2.0) };
             let travel = if along == 0.0 { light } else { (view * along + light * off).normalize_or(view) };
             let points = points.into_iter().map(|(shares, scale)| view_point(&camera, shares) * scale).collect();
             let visible = visible.map(|(near, length)| DepthRange { near, far: near + length });
