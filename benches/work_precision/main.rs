@@ -87,23 +87,9 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
     // Write the table, the curves and the page.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = root.join(if quick || only.is_some() { "target/work_precision" } else { "docs" });
-    let meta = meta(&backend, quick, only, start);
-    write_all(&folder, &meta, &contenders, &effort, &measured, &biases)
-}
-
-/// Where the numbers come from.
-fn meta(backend: &Backend, quick: bool, only: Option<&str>, start: Instant) -> Vec<(&'static str, String)> {
-    let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-    let profile = if cfg!(debug_assertions) { "test" } else { "bench" };
     let arguments: Vec<&str> = quick.then_some("--quick").into_iter().chain(only).collect();
-    let arguments = if arguments.is_empty() { String::new() } else { format!(" -- {}", arguments.join(" ")) };
-    vec![
-        ("command", format!("{scenes}cargo {profile} --bench work_precision{arguments}")),
-        ("commit", cli::commit()),
-        ("adapter", backend.adapter()),
-        ("date", cli::now()),
-        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
-    ]
+    let meta = cli::provenance("work_precision", &arguments, backend.adapter(), start);
+    write_all(&folder, &meta, &contenders, &effort, &measured, &biases)
 }
 
 fn write_all(

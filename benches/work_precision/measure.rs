@@ -1,6 +1,5 @@
 //! Photographs every contender of a case and a size in turns, and races the library against passes by hand.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use antumbra::lab::case::Case;
@@ -86,6 +85,9 @@ pub(crate) struct Measured {
     pub(crate) nine_taps: Vec<NineTaps>,
 }
 
+/// Name of the set of case files.
+pub(crate) const SHARED: &str = "shared";
+
 /// The built-in scenes, and the case files beside the folder of `ANTUMBRA_SCENES`, by the name of their set; only the
 /// cases whose name contains `only`, at most so many of each set.
 pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<Assignment>)>, String> {
@@ -93,15 +95,7 @@ pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<A
     for scene in ["treeline", "sparse-city"] {
         sets.push((scene.to_owned(), vec![Assignment::of_scene(scene)?]));
     }
-    if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
-        let folder = Path::new(&scenes).join("../cases");
-        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-        paths.retain(|path| path.extension().is_some_and(|found| found == "json"));
-        paths.sort();
-        let assignments = paths.iter().map(|path| Assignment::of_case(path)).collect::<Result<_, _>>()?;
-        sets.push(("shared".to_owned(), assignments));
-    }
+    sets.push((SHARED.to_owned(), Assignment::shared()?));
     for (set, assignments) in &mut sets {
         let mut left = most;
         for assignment in &mut *assignments {
