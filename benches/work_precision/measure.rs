@@ -24,19 +24,12 @@ pub(crate) const RACE_SIZE: u32 = 1024;
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
     pub(crate) sizes: Vec<u32>,
-    /// Turns of the contenders, and those of maps of [`LARGE`] texels and more.
-    pub(crate) turns: [u32; 2],
-    /// Turns of the comparison with nine comparisons, likewise.
+    /// Turns of the contenders.
+    pub(crate) turns: u32,
+    /// Turns of the comparison with nine comparisons, and those of maps of [`LARGE`] texels and more.
     pub(crate) nine_turns: [u32; 2],
     /// Turns of a race: its medians are ratios of neighbours in time.
     pub(crate) race_turns: u32,
-}
-
-impl Effort {
-    /// Turns at a size.
-    fn turns(&self, size: u32) -> u32 {
-        self.turns[usize::from(size >= LARGE)]
-    }
 }
 
 impl Effort {
@@ -150,7 +143,7 @@ impl Session<'_> {
             Studio::new(self.backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
         let present: Vec<&Contender> = self.contenders.iter().filter(|contender| takes_part(contender, size)).collect();
         let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
-        let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns(size));
+        let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns);
         let ratios = SIZES.contains(&size).then(|| NineTaps {
             case: case.name.clone(),
             size,

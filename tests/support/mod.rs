@@ -5,6 +5,7 @@ pub(crate) mod compute;
 
 use std::path::PathBuf;
 
+use antumbra::lab::case::{Case, CaseCamera, CaseLight};
 use antumbra::lab::comparison::{shared_case_files, shared_scenes};
 use antumbra::lab::gpu::Gpu;
 use antumbra::lab::scene::{Cutout, SOLID, SceneModel};
@@ -138,6 +139,25 @@ fn is_hole(model: &SceneModel, triangle: usize, u: f64, v: f64) -> bool {
     let texel = |t: f64, side: u32| ((t.rem_euclid(1.0) * f64::from(side)) as u32).min(side - 1);
     let alpha = cutout.alpha[(texel(at.y, cutout.height) * cutout.width + texel(at.x, cutout.width)) as usize];
     f32::from(alpha) / 255.0 < cutout.cutoff
+}
+
+/// A camera and a sun (its `travel` of any length) over geometry that a test makes; shadows as far as the camera sees.
+pub(crate) fn case_over(camera: CaseCamera, travel: DVec3, viewport: [u32; 2]) -> Case {
+    let case = Case {
+        name: "made here".into(),
+        scene: "made here".into(),
+        camera,
+        light: CaseLight::Directional { travel: travel.normalize() },
+        viewport,
+        shadow_distance: camera.far,
+        folder: PathBuf::new(),
+    };
+    case.check().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What the manual says of a measurement is what is measured, so that it cannot go stale unnoticed.
+pub(crate) fn as_quoted(what: &str, measured: f64, quoted: f64, within: f64) {
+    assert!((measured - quoted).abs() <= within, "{what}: {measured}, and README.md says {quoted} (± {within})");
 }
 
 /// The folder of the third-party scenes, beside which their cases lie in `../cases`; none, said aloud, where
