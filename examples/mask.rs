@@ -26,7 +26,8 @@ struct Arguments {
     /// The case file.
     #[arg(long, value_name = "FILE.json")]
     case: PathBuf,
-    /// Technique by name: ssm (whole scene) or fsm (what is in view).
+    /// Technique by name, such as ssm, fsm, cascades or smra-plus: README.md lists all of them, and so does the error of a
+    /// name that is none.
     #[arg(long, value_name = "NAME")]
     technique: String,
     /// Side of the map, texels, 1 to 16384.

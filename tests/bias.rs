@@ -1,9 +1,11 @@
 //! Biases on the software renderer: without one surfaces shadow themselves, the automatic one leaves next to nothing of
 //! it, a constant and a slope do what their units say, and maps of back faces need none on the lit side.
 
+mod support;
+
 use antumbra::encoding::depth::antumbra_look;
 use antumbra::gpu::{ShadowMaps, ShadowMapsDescriptor};
-use antumbra::lab::case::{Case, CaseCamera, CaseLight};
+use antumbra::lab::case::{Case, CaseCamera};
 use antumbra::lab::cpu::{self, Visible};
 use antumbra::lab::gpu::{Gpu, GpuScene, RenderOptions, Renderer};
 use antumbra::lab::metrics::detachment::{Detachment, contacts, detachment};
@@ -43,9 +45,7 @@ impl Studio {
             near: 0.5,
             far: 60.0,
         };
-        let (name, scene, folder) = ("box".to_owned(), String::new(), std::path::PathBuf::new());
-        let light = CaseLight::Directional { travel };
-        let case = Case { name, scene, camera, light, viewport: [240, 180], shadow_distance: 60.0, folder };
+        let case = support::case_over(camera, travel, [240, 180]);
         let truth = Truth::trace(&case, &subject.model, &|| {});
         let setting = Setting::of(&case);
         let visible = Visible::draw(&subject.model, &setting.camera, setting.origin);

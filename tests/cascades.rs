@@ -3,8 +3,8 @@
 
 use antumbra::split::depth::planes;
 use antumbra::{
-    Aabb, Camera, ClipDepth, Content, DepthSplits, FitInput, Light, MapBudget, Projection, Remix, Scene, Scheme,
-    Select, ShadowFrame, ShadowTechnique, Split, Stabilise, Warp,
+    Aabb, Camera, ClipDepth, Content, DepthSplits, FitInput, Light, MapBudget, MapShape, Projection, Remix, Scene,
+    Scheme, Select, ShadowFrame, ShadowTechnique, Split, Stabilise, Warp, techniques,
 };
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 
@@ -19,6 +19,11 @@ fn cascades() -> Remix {
 /// The same, fitted tightly.
 fn tight() -> Remix {
     Remix { stabilise: Stabilise::Off, ..cascades() }
+}
+
+/// These, and the composites by name.
+fn all() -> [Remix; 4] {
+    [cascades(), tight(), techniques::smra(), techniques::smra_plus()]
 }
 
 fn fit(remix: &Remix, camera: Camera, travel: DVec3, side: u32, origin: DVec3) -> ShadowFrame {
@@ -58,18 +63,21 @@ fn clip(frame: &ShadowFrame, view: usize, point: DVec3, origin: DVec3) -> DVec3 
     at.truncate().as_dvec3() / f64::from(at.w)
 }
 
+/// By how much the farthest depth of a warped map may lie beyond 1: in a world 100,000 times as large as the slice, f32
+/// loses 6e-5 of a depth that is divided. Nothing that the slice shows lies behind it.
+const ROUNDED: f64 = 1e-4;
+
 /// Every view holds the corners of the depths that it serves.
 fn holds_its_slices(frame: &ShadowFrame, camera: &Camera, far: f64, origin: DVec3) {
-    assert_eq!(frame.views.len(), 4, "{:?}", frame.left_out);
-    for view in 0..4 {
+    assert_eq!(frame.views.len(), usize::from(frame.wgsl.maps), "{:?}", frame.left_out);
+    let farthest = if frame.wgsl.shape == MapShape::Affine { 1.0 } else { 1.0 + ROUNDED };
+    for view in 0..frame.views.len() {
         let [from, to, ..] = frame.uniforms.views[view].domain;
         for depth in [f64::from(from), f64::from(to).min(far)] {
             for corner in corners(camera, depth) {
                 let at = clip(frame, view, corner, origin);
-                assert!(
-                    at.truncate().abs().max_element() <= 1.0 && (-1e-6..=1.0).contains(&at.z),
-                    "view {view} at {at}"
-                );
+                let held = at.truncate().abs().max_element() <= 1.0 && (-1e-6..=farthest).contains(&at.z);
+                assert!(held, "view {view} of {:?} at {at}", frame.wgsl.shape);
             }
         }
     }
@@ -87,7 +95,7 @@ fn splits_begin_and_end_with_the_range() {
 fn orthographic_cameras_may_begin_at_zero() {
     let projection = Projection::Orthographic { left: -8.0, right: 8.0, down: -5.0, up: 5.0, near: 0.0, far: 120.0 };
     let camera = Camera { projection, ..camera(0.1, 100.0) };
-    for remix in [cascades(), tight()] {
+    for remix in all() {
         let frame = fit(&remix, camera, sun(), 1024, DVec3::ZERO);
         assert!(finite(&frame));
         holds_its_slices(&frame, &camera, 120.0, DVec3::ZERO);
@@ -97,7 +105,7 @@ fn orthographic_cameras_may_begin_at_zero() {
 #[test]
 fn endless_views_end_with_the_scene_or_what_is_visible() {
     let camera = camera(0.1, f64::INFINITY);
-    for remix in [cascades(), tight()] {
+    for remix in all() {
         assert!(finite(&fit(&remix, camera, sun(), 1024, DVec3::ZERO)));
         let scene = Scene {
             visible_depth: Some(antumbra::DepthRange { near: 0.1, far: 200.0 }),
@@ -134,11 +142,12 @@ fn bands_nest() {
 #[test]
 fn casters_far_towards_the_light_are_in_every_map() {
     let camera = camera(0.1, 150.0);
-    for remix in [cascades(), tight()] {
+    for remix in all() {
         let frame = fit(&remix, camera, sun(), 1024, DVec3::ZERO);
-        for view in 0..4 {
+        for view in 0..frame.views.len() {
             let [near, far, ..] = frame.uniforms.views[view].domain;
-            for point in corners(&camera, f64::from(0.5 * (near + far))) {
+            // The last slice may have no end.
+            for point in corners(&camera, f64::from(0.5 * (near + far.min(150.0)))) {
                 let caster = point - sun() * 90.0;
                 assert!(frame.views[view].cull.may_cast(&Aabb::new(caster, caster)));
                 assert!(clip(&frame, view, caster, DVec3::ZERO).z >= 0.0);
@@ -151,7 +160,7 @@ fn casters_far_towards_the_light_are_in_every_map() {
 fn slices_are_inside_of_their_maps() {
     for (near, far) in [(0.1, 150.0), (0.01, 0.1), (1.0, 4000.0)] {
         let camera = camera(near, far);
-        for remix in [cascades(), tight()] {
+        for remix in all() {
             holds_its_slices(&fit(&remix, camera, sun(), 1024, DVec3::ZERO), &camera, far, DVec3::ZERO);
         }
     }
@@ -180,7 +189,7 @@ fn reversed_depth_is_the_same_camera() {
     );
     let reversed = Camera::from_matrices(camera.world_from_view, near_is_one * standard, ClipDepth::ZeroToOne);
     let reversed = reversed.expect("a legal projection");
-    for remix in [cascades(), tight()] {
+    for remix in all() {
         let frame = fit(&remix, reversed, sun(), 1024, DVec3::ZERO);
         assert!(finite(&frame));
         holds_its_slices(&frame, &camera, 150.0, DVec3::ZERO);
@@ -192,7 +201,7 @@ fn light_may_run_along_up_and_along_the_view() {
     let camera = camera(0.1, 150.0);
     let view = -camera.world_from_view.z_axis.truncate();
     for travel in [DVec3::NEG_Y, DVec3::Y, view, -view, (view + DVec3::X * 1e-9).normalize()] {
-        for remix in [cascades(), tight()] {
+        for remix in all() {
             holds_its_slices(&fit(&remix, camera, travel, 1024, DVec3::ZERO), &camera, 150.0, DVec3::ZERO);
         }
     }
@@ -203,7 +212,7 @@ fn worlds_may_be_far_from_their_origin() {
     let eye = DVec3::new(1e7, 2e6, -1e7);
     let mut camera = camera(0.1, 150.0);
     camera.world_from_view.w_axis = eye.extend(1.0);
-    for remix in [cascades(), tight()] {
+    for remix in all() {
         holds_its_slices(&fit(&remix, camera, sun(), 1024, eye), &camera, 150.0, eye);
     }
 }
@@ -307,7 +316,7 @@ fn snapped_maps_scroll_or_stay() {
 /// Scenes that do not need splits do not get them: how many views there are, and why no more.
 mod what_is_left_out {
     use super::*;
-    use antumbra::{Object, Part, Why, techniques};
+    use antumbra::{Object, Part, Why};
 
     fn shot(scene: Scene, camera: Camera, travel: DVec3, side: u32) -> ShadowFrame {
         let map = MapBudget { side, layers: 4, views: 4 };

@@ -4,9 +4,10 @@
 mod support;
 
 use antumbra::lab::case::Case;
-use antumbra::lab::comparison::Assignment;
+use antumbra::lab::comparison::{Assignment, shared_scenes};
 use antumbra::lab::experiment::{Backend, Studio};
 use antumbra::lab::metrics::Scores;
+use antumbra::lab::statistics::geometric_mean;
 use antumbra::lab::subject::{Setting, Subject};
 use antumbra::lab::truth::{Truth, TruthCache};
 use antumbra::{Remix, techniques};
@@ -43,12 +44,8 @@ fn assignments() -> Vec<Assignment> {
     built_in.into_iter().chain(shared).collect()
 }
 
-/// Geometric mean.
-fn mean(ratios: &[f64]) -> f64 {
-    (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp()
-}
-
-/// SMRA plus has the least mean error: of all cases 0.75 times that of the best of what it is made of, in no case more,
+/// SMRA plus has the least mean error in every case: in the geometric mean over all of them no more than 0.7 times that
+/// of the best of what it is made of (over the built-in ones alone, where the project tunes, 0.72: 0.715 was measured),
 /// and with 512 texels less than the standard map with 2048. (Ratios are of mean errors: the excess over a perfect hard
 /// edge is often negative, of which there is no ratio. `docs/THESIS.md` has both.)
 #[test]
@@ -63,13 +60,15 @@ fn smra_plus_is_better_than_its_parts() {
             let best = others.into_iter().fold(f64::INFINITY, f64::min);
             let [ours, large] = [error(&plus, SIDE), error(&techniques::ssm(), 4 * SIDE)];
             println!("{}: {ours:.5}, best of the others {best:.5}, ssm of 2048 {large:.5}", place.name);
-            assert!(ours <= 1.05 * best, "{}: {ours} against {best}", place.name);
+            assert!(ours <= best, "{}: {ours} against {best}", place.name);
             to_best.push(ours / best);
             to_large.push(ours / large);
         }
     }
-    println!("to the best of the others {:.3}, to ssm of 2048 {:.3}", mean(&to_best), mean(&to_large));
-    assert!(mean(&to_best) <= 0.75 && mean(&to_large) <= 1.0);
+    let [to_best, to_large] = [to_best, to_large].map(|ratios| geometric_mean(&ratios));
+    println!("to the best of the others {to_best:.3}, to ssm of 2048 {to_large:.3}");
+    let most = if shared_scenes().is_some() { 0.7 } else { 0.72 };
+    assert!(to_best <= most && to_large <= 1.0, "{to_best} {to_large}");
 }
 
 /// Pixels that are larger than texels: lit walls stay lit along the ground, where their planes go on below it.

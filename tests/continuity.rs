@@ -312,8 +312,9 @@ fn leaps(remix: &Remix, told: bool) -> [Steps; 2] {
 #[test]
 fn planes_stay_where_they_were() {
     let splits = DepthSplits { enough: 0.0, ..DepthSplits::DEFAULT };
-    let remix = Remix { split: Split::Depth(splits), ..techniques::cascades() };
-    for told in [false, true] {
+    let with = |technique: Remix| Remix { split: Split::Depth(splits), ..technique };
+    let both = [with(techniques::cascades()), with(techniques::smra_plus())];
+    for (remix, told) in both.into_iter().flat_map(|remix| [false, true].map(|told| (remix, told))) {
         let [followed, fresh] = leaps(&remix, told);
         let worse = (followed.error - fresh.error) / fresh.all as f64;
         println!("what is seen is known {told}: {followed:?}, without what was before {fresh:?}, {worse:.4} worse");

@@ -3,10 +3,13 @@
 //! A half is never wrong by more than a half, so that figures that count such pixels praise the rule wherever it
 //! holds; the mean error shows what it costs.
 
+mod support;
+
 use antumbra::lab::cpu::{Visible, render};
-use antumbra::lab::metrics::{Scores, mask_from_bytes};
+use antumbra::lab::metrics::{Edges, Scores, mask_from_bytes, near_edges};
 use antumbra::lab::shapes::MeshBuilder;
 use antumbra::lab::sparse_city::sparse_city;
+use antumbra::lab::statistics::mean;
 use antumbra::lab::subject::{Setting, Subject, case_of};
 use antumbra::lab::truth::Truth;
 use antumbra::lab::viewpoints::{Viewpoint, sparse_city_viewpoints};
@@ -62,8 +65,10 @@ struct Found {
     band: f64,
     /// Light and shadow where there is none, away from edges, shares of all valid pixels.
     interior: [f64; 2],
-    /// Mean |v − area truth| over those pixels.
+    /// Mean |v − area truth| over the pixels in which it grazes.
     grazed: f64,
+    /// The same over all valid pixels away from edges.
+    inside: f64,
     /// The same over all valid pixels.
     mae: f64,
 }
@@ -82,14 +87,17 @@ fn measure(subject: &Subject, viewpoint: &Viewpoint, remix: &Remix, truth: &Trut
         let cosine = -visible.pixel(pixel).map_or(-1.0, |hit| hit.normal.dot(travel));
         truth.valid[pixel] && (0.0..=BAND).contains(&cosine)
     };
-    let errors: Vec<f64> = (0..mask.len())
-        .filter(|&pixel| grazes(pixel))
-        .map(|pixel| f64::from((mask[pixel] - truth.area[pixel]).abs()))
-        .collect();
+    let errors = |of: &dyn Fn(usize) -> bool| -> Vec<f64> {
+        let error = |pixel: usize| f64::from((mask[pixel] - truth.area[pixel]).abs());
+        (0..mask.len()).filter(|&pixel| of(pixel)).map(error).collect()
+    };
+    let near = near_edges(truth, Edges::Area);
+    let (grazed, inside) = (errors(&grazes), errors(&|pixel| truth.valid[pixel] && !near[pixel]));
     Found {
-        band: errors.len() as f64 / scores.valid_pixels as f64,
+        band: grazed.len() as f64 / scores.valid_pixels as f64,
         interior: [scores.leak_interior, scores.false_interior],
-        grazed: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
+        grazed: mean(&grazed),
+        inside: mean(&inside),
         mae: scores.mae,
     }
 }
@@ -100,14 +108,26 @@ fn setting(viewpoint: &Viewpoint) -> Setting {
     Setting::of(&case)
 }
 
+/// What the manual says of the walls: without the rule, as printed, and as a continuous one.
+fn as_quoted(name: &str, [off, printed, continuous]: [Found; 3]) {
+    let quoted: &[(f64, f64)] = match name {
+        "fsm" => &[(off.grazed, 0.21), (printed.grazed, 0.49), (continuous.grazed, 0.45)],
+        "fsm, constant bias" => &[(off.grazed, 0.39)],
+        _ => &[],
+    };
+    for &(found, quoted) in quoted {
+        support::as_quoted(name, found, quoted, 0.006);
+    }
+}
+
 #[test]
 fn the_rule_answers_a_half_where_light_grazes() {
     let across = sparse_city_viewpoints().swap_remove(0);
     println!("{SIDE}² maps, {} × {} pixels; all figures in %.", PICTURE[0], PICTURE[1]);
     println!(
-        "| scene | technique | rule | pixels 85° to 90° | leak interior | false interior | mean error there | mean error |"
+        "| scene | technique | rule | pixels 85° to 90° | leak interior | false interior | mean error there | mean error away from edges | mean error |"
     );
-    println!("|---|---|---|--:|--:|--:|--:|--:|");
+    println!("|---|---|---|--:|--:|--:|--:|--:|--:|");
     for (subject, viewpoint) in [walls(), (Subject::new(sparse_city()), across)] {
         let mut case = case_of(&viewpoint, "grazing");
         case.viewport = PICTURE;
@@ -124,12 +144,13 @@ fn the_rule_answers_a_half_where_light_grazes() {
             let found = Grazing::ALL.map(|grazing| {
                 let found = measure(&subject, &viewpoint, &Remix { grazing, ..technique }, &truth, &visible);
                 let [leak, acne] = found.interior.map(|share| 100.0 * share);
-                let Found { band, grazed, mae, .. } = found;
+                let Found { band, grazed, inside, mae, .. } = found;
                 println!(
-                    "| {} | {name} | {grazing:?} | {:.2} | {leak:.3} | {acne:.3} | {:.2} | {:.2} |",
+                    "| {} | {name} | {grazing:?} | {:.2} | {leak:.3} | {acne:.3} | {:.2} | {:.2} | {:.2} |",
                     viewpoint.name,
                     100.0 * band,
                     100.0 * grazed,
+                    100.0 * inside,
                     100.0 * mae
                 );
                 found
@@ -145,6 +166,10 @@ fn the_rule_answers_a_half_where_light_grazes() {
             assert!(printed.grazed > 0.35, "{name}: {printed:?}");
             // Why the rule is off unless it is asked for: what the maps say there is nearer to the truth.
             assert!(off.grazed < printed.grazed && off.grazed < continuous.grazed, "{name}: {off:?}");
+            if viewpoint.name == "walls" {
+                assert!(off.inside < printed.inside && off.inside < continuous.inside, "{name}: {off:?}");
+                as_quoted(name, found);
+            }
         }
     }
 }

@@ -226,6 +226,25 @@ fn neighbours_are_not_read() {
     }
 }
 
+/// Nor do the composites by name read them, where their maps share texels.
+#[test]
+fn neighbours_of_composites_are_not_read() {
+    let (subject, setting) = city();
+    let visible = Visible::draw(&subject.model, &setting.camera, setting.origin);
+    for technique in [techniques::smra(), techniques::smra_plus()] {
+        let remix = Remix { share: Share::LeastError, ..technique };
+        let input = setting.input(&subject, &[], remix.wgsl_key(), 256);
+        let map = MapBudget { layers: 2, ..input.map };
+        let frame = remix.fit(&FitInput { map, ..input }).expect("legal");
+        let maps = usize::from(frame.wgsl.maps);
+        assert!(frame.views.len() == maps && maps > 2, "{:?}", frame.left_out);
+        let [together, alone] =
+            [&frame, &apart(&frame)].map(|frame| cpu::render(&subject, &visible, frame, &setting).mask);
+        assert!(together == alone, "{:?}", remix.encoding);
+        assert!(together.contains(&0) && together.contains(&255));
+    }
+}
+
 /// Wherever a receiver lies, and whatever its filter, one map of light among maps of darkness reads light beyond what
 /// is drawn, if the texels around it are light.
 #[test]

@@ -3,7 +3,7 @@
 mod support;
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use antumbra::lab::bvh::{Bvh, Ray};
 use antumbra::lab::case::{Case, CaseCamera, CaseLight, SceneSource};
@@ -71,16 +71,8 @@ fn load(path: &Path) -> (Case, SceneModel) {
 
 /// A camera and a directional light over geometry made here.
 fn case_over(eye: DVec3, target: DVec3, up: DVec3, travel: DVec3, viewport: [u32; 2]) -> Case {
-    let case = Case {
-        name: "made here".into(),
-        scene: "made here".into(),
-        camera: CaseCamera { eye, target, up, fov_y_deg: 40.0, near: 0.1, far: 100.0 },
-        light: CaseLight::Directional { travel: travel.normalize() },
-        viewport,
-        shadow_distance: 100.0,
-        folder: PathBuf::new(),
-    };
-    case.check().unwrap_or_else(|error| panic!("{error}"))
+    let camera = CaseCamera { eye, target, up, fov_y_deg: 40.0, near: 0.1, far: 100.0 };
+    support::case_over(camera, travel, viewport)
 }
 
 /// A point of the plane y = 0 seen at a place of the picture, in pixels from its upper left corner.

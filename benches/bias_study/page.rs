@@ -52,7 +52,8 @@ fn matrix(text: &mut String, pictures: &[Picture]) {
 After Fig. 6 of D. Scherzer, *Robust shadow maps for large environments*: one map of {SIDE} texels, hardware 2×2 filter. *Constant* and
 *slope-scaled* are `Bias::Manual` with `depth_world` (world units) or `slope_texels` alone, set by hand for each map and each picture: the
 least strength, in steps of √2, that leaves at most {} % acne, and the least that leaves no more than the automatic bias does (*as
-automatic*). No engine can do that, its bias has to serve every picture; these are the best that such a bias can be. *Automatic* is the
+automatic*). They are searched by halving the range, which finds the least where acne falls with every step; where it does not, one step
+less leaves too much, but fewer still might do. No engine can do that, its bias has to serve every picture; these are the best that such a bias can be. *Automatic* is the
 default and has no strength. The bias is the receiver's, and taken off before the division by w: a constant that a rasteriser adds to
 its hyperbolic depths afterwards grows with w, and was not measured. *Back faces only*: casters with front faces culled, in wgpu
 `cull_mode: Some(Face::Front)` and the default counter-clockwise front faces; linear depth. It needs closed solids. The city's buildings

@@ -8,11 +8,11 @@ mod measure;
 mod page;
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use antumbra::lab::cli;
-use antumbra::lab::comparison::Assignment;
+use antumbra::lab::comparison::{Assignment, shared_scenes};
 use antumbra::lab::files::write_whole;
 use antumbra::lab::gpu::Gpu;
 
@@ -34,13 +34,16 @@ const CASES: [&str; 4] = ["fence-general", "columns-row", "treeline/across", "sp
 /// The same with `--quick`.
 const QUICK_CASES: [&str; 2] = ["columns-row", "treeline/across"];
 
-/// Turns that every contender gets; medians are reported.
-const TURNS: usize = 3;
+/// Turns that every contender gets: the fewest whose quartiles are turns of their own, neither median nor extreme.
+const TURNS: u32 = 5;
+
+/// The same with `--quick`.
+const QUICK_TURNS: u32 = 3;
 
 fn assignments(wanted: &[&str]) -> Result<Vec<Assignment>, String> {
     let mut assignments = Vec::new();
-    if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
-        let folder: PathBuf = Path::new(&scenes).join("../cases");
+    if let Some(scenes) = shared_scenes() {
+        let folder = scenes.join("../cases");
         for name in wanted.iter().filter(|name| !name.contains('/')) {
             assignments.push(Assignment::of_case(&folder.join(format!("{name}.json")))?);
         }
@@ -55,14 +58,13 @@ fn assignments(wanted: &[&str]) -> Result<Vec<Assignment>, String> {
 }
 
 fn csv(records: &[Record]) -> String {
-    let mut text = "case,width,technique,filter_ms,receivers_ms,total_ms,mae,excess,distance,leak,false\n".to_owned();
+    let mut text = "case,width,technique,filter_ms,filter_spread_ms,receivers_ms,receivers_spread_ms,total_ms,total_spread_ms,mae,\
+                    excess,distance,leak,false\n"
+        .to_owned();
     for record in records {
-        let Record { case, width, name, filter_ms, receivers_ms, mae, excess, distance, leak, acne } = record;
-        let total = record.total_ms();
-        let _ = writeln!(
-            text,
-            "{case},{width},\"{name}\",{filter_ms},{receivers_ms},{total},{mae},{excess},{distance},{leak},{acne}"
-        );
+        let Record { case, width, name, filter, receivers, total, mae, excess, distance, leak, acne } = record;
+        let times = [filter, receivers, total].map(|time| format!("{},{}", time.ms, time.spread)).join(",");
+        let _ = writeln!(text, "{case},{width},\"{name}\",{times},{mae},{excess},{distance},{leak},{acne}");
     }
     text
 }
@@ -72,7 +74,7 @@ fn main() -> Result<(), String> {
     let quick = std::env::args().any(|argument| argument == "--quick");
     let gpu = Gpu::new().map_err(|error| error.to_string())?;
     let (cases, widths, turns) =
-        if quick { (&QUICK_CASES[..], &QUICK_WIDTHS[..], 1) } else { (&CASES[..], &WIDTHS[..], TURNS) };
+        if quick { (&QUICK_CASES[..], &QUICK_WIDTHS[..], QUICK_TURNS) } else { (&CASES[..], &WIDTHS[..], TURNS) };
     let mut bench = Bench::new(&gpu, turns);
     for assignment in assignments(cases)? {
         for case in &assignment.cases {
@@ -83,19 +85,10 @@ fn main() -> Result<(), String> {
     let folder = root.join("target/filter_sweep");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     write_whole(&folder.join("sweep.csv"), csv(&bench.records).as_bytes())?;
-    let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-    let meta = [
-        (
-            "command",
-            format!("{scenes}cargo {} --bench filter_sweep", if cfg!(debug_assertions) { "test" } else { "bench" }),
-        ),
-        ("commit", cli::commit()),
-        ("adapter", gpu.adapter().to_owned()),
-        ("date", cli::now()),
-        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
-    ];
+    let arguments: &[&str] = if quick { &["--quick"] } else { &[] };
+    let meta = cli::provenance("filter_sweep", arguments, gpu.adapter().to_owned(), start);
     let memory = contenders::memory(&gpu)?;
-    let text = page::page(&meta, &bench.records, &memory);
+    let text = page::page(&meta, turns, &bench.records, &memory);
     if quick {
         println!("{text}");
         return Ok(());

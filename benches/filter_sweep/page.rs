@@ -6,7 +6,7 @@ use antumbra::lab::report::{Axes, Axis, PlotPoint, Series, error_time_svg};
 use antumbra::lab::statistics::{geometric_mean, mean};
 
 use crate::contenders::{Memory, PCF};
-use crate::measure::Record;
+use crate::measure::{Record, Time};
 
 /// Width from which filters are called wide, texels.
 const WIDE: u32 = 15;
@@ -19,12 +19,14 @@ const HEAD: &str = "# Moments and percentage-closer filtering
 This page is written by the command below; every number on it comes from that run.
 ";
 
+/// `{turns}` is filled in.
 const TABLE: &str = "
 One focused map of 1024 texels, a box of so many texels everywhere, no mips, no darkening. *PCF* compares first and averages then, with
 (n + 1)/2 bilinear comparisons to an axis, which weigh texels exactly as the moments' box and their interpolation do: it is the same
 penumbra without the loss, and *from PCF* is the root mean square distance from its picture (over valid pixels, 0 to 1). *Filter*,
-*receivers* and *total* are milliseconds of the adapter, medians of turns, mean over cases; *÷ PCF* is the total over PCF's, geometric
-mean. *Excess* is the mean absolute error against the area truth above that of a perfect hard edge, %: wide filters soften what the truth
+*receivers* and *total* are milliseconds of the adapter: medians of {turns} turns, in which contenders follow each other forwards and
+backwards in alternation, after one that is not timed; ± half the distance between the quartiles; both are means over cases. *÷ PCF* is
+the total over PCF's, geometric mean. *Excess* is the mean absolute error against the area truth above that of a perfect hard edge, %: wide filters soften what the truth
 has hard, PCF as well. *Leak* and *false*: pixels more than half wrong away from edges, %. Moments err towards light: their *excess* is low
 also because they leak where a wide PCF shades too much. Read *leak* and *from PCF* beside it.
 ";
@@ -50,17 +52,22 @@ fn widths(records: &[Record]) -> Vec<u32> {
     widths
 }
 
+/// Mean over cases, and mean spread.
+fn time(records: &[&Record], of: impl Fn(&Record) -> Time) -> String {
+    format!("{:.1} ± {:.1}", average(records, |record| of(record).ms), average(records, |record| of(record).spread))
+}
+
 fn average(records: &[&Record], figure: impl Fn(&Record) -> f64) -> f64 {
     mean(&records.iter().map(|record| figure(record)).collect::<Vec<_>>())
 }
 
-pub(crate) fn page(meta: &[(&str, String)], records: &[Record], memory: &[Memory]) -> String {
+pub(crate) fn page(meta: &[(&str, String)], turns: u32, records: &[Record], memory: &[Memory]) -> String {
     let mut text = HEAD.to_owned();
     text.push('\n');
     for (name, value) in meta {
         let _ = writeln!(text, "- {name}: `{value}`");
     }
-    text.push_str(TABLE);
+    text.push_str(&TABLE.replace("{turns}", &turns.to_string()));
     text.push_str("\n![time by width](filters-time.svg)\n\n![distance from the same penumbra](filters-distance.svg)\n");
     for width in widths(records) {
         table(&mut text, records, width);
@@ -83,13 +90,13 @@ fn table(text: &mut String, records: &[Record], width: u32) {
     for name in names(records) {
         let these = of(records, width, name);
         let pcf = of(records, width, PCF);
-        let ratios: Vec<f64> = these.iter().zip(&pcf).map(|(one, pcf)| one.total_ms() / pcf.total_ms()).collect();
+        let ratios: Vec<f64> = these.iter().zip(&pcf).map(|(one, pcf)| one.total.ms / pcf.total.ms).collect();
         let _ = writeln!(
             text,
-            "| {name} | {:.1} | {:.1} | {:.1} | {:.2} | {:.2} | {:.4} | {:.3} | {:.3} |",
-            average(&these, |record| record.filter_ms),
-            average(&these, |record| record.receivers_ms),
-            average(&these, Record::total_ms),
+            "| {name} | {} | {} | {} | {:.2} | {:.2} | {:.4} | {:.3} | {:.3} |",
+            time(&these, |record| record.filter),
+            time(&these, |record| record.receivers),
+            time(&these, |record| record.total),
             geometric_mean(&ratios),
             100.0 * average(&these, |record| record.excess),
             average(&these, |record| record.distance),
@@ -113,22 +120,19 @@ fn wide(text: &mut String, records: &[Record]) {
     for pcf in records.iter().filter(|record| record.name == PCF && record.width >= WIDE) {
         let same = |record: &&Record| record.case == pcf.case && record.width == pcf.width && record.name != PCF;
         let good = records.iter().filter(same).filter(|record| record.mae <= pcf.mae + SAME);
-        let best = good.min_by(|a, b| a.total_ms().total_cmp(&b.total_ms()));
-        let holds = best.is_some_and(|best| best.total_ms() < pcf.total_ms());
+        let best = good.min_by(|a, b| a.total.ms.total_cmp(&b.total.ms));
+        let holds = best.is_some_and(|best| best.total.ms < pcf.total.ms);
         (held, count) = (held + usize::from(holds), count + 1);
-        let (name, ms, excess) =
-            best.map_or(("none", f64::NAN, f64::NAN), |best| (best.name.as_str(), best.total_ms(), best.excess));
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.1} | {name} | {ms:.1} | {:.2} | {:.2}, {:.2} | {} |",
-            pcf.case,
-            pcf.width,
-            pcf.total_ms(),
-            ms / pcf.total_ms(),
-            100.0 * excess,
-            100.0 * pcf.excess,
-            if holds { "yes" } else { "**no**" }
+        let found = best.map_or_else(
+            || "none | – | – | –".to_owned(),
+            |best| {
+                let (ms, ratio) = (best.total.ms, best.total.ms / pcf.total.ms);
+                format!("{} | {ms:.1} | {ratio:.2} | {:.2}", best.name, 100.0 * best.excess)
+            },
         );
+        let (case, width, ms) = (&pcf.case, pcf.width, pcf.total.ms);
+        let (excess, holds) = (100.0 * pcf.excess, if holds { "yes" } else { "**no**" });
+        let _ = writeln!(text, "| {case} | {width} | {ms:.1} | {found}, {excess:.2} | {holds} |");
     }
     let _ = writeln!(text, "\nThe best moments are faster than PCF at no more error in {held} of {count} pictures.");
 }
@@ -145,7 +149,7 @@ pub(crate) fn plots(records: &[Record]) -> [(&'static str, String); 2] {
         };
         names(records).into_iter().enumerate().map(curve).collect()
     };
-    let time = |these: &[&Record]| average(these, Record::total_ms);
+    let time = |these: &[&Record]| average(these, |record| record.total.ms);
     let axis = |name: &str| Axis { name: name.to_owned(), ..Axis::default() };
     let by_width = series(&|width, _| f64::from(width), &time);
     let mut by_distance = series(&|_, these| average(these, |record| record.distance), &time);

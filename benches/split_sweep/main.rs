@@ -5,7 +5,7 @@
 mod page;
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use antumbra::lab::cli;
@@ -111,16 +111,7 @@ fn shares() -> Vec<(String, u32, Remix)> {
 }
 
 fn assignments(only: Option<&str>) -> Result<Vec<(&'static str, Assignment)>, String> {
-    let mut assignments = Vec::new();
-    if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
-        let folder = Path::new(&scenes).join("../cases");
-        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-        paths.sort();
-        for path in paths.iter().filter(|path| path.extension().is_some_and(|found| found == "json")) {
-            assignments.push(("shared", Assignment::of_case(path)?));
-        }
-    }
+    let mut assignments: Vec<_> = Assignment::shared()?.into_iter().map(|of| ("shared", of)).collect();
     for scene in ["treeline", "sparse-city"] {
         assignments.push(("built-in", Assignment::of_scene(scene)?));
     }
@@ -203,13 +194,6 @@ fn main() -> Result<(), String> {
     if only.is_some() {
         return Ok(());
     }
-    let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-    let meta = [
-        ("command", format!("{scenes}cargo bench --bench split_sweep")),
-        ("commit", cli::commit()),
-        ("renderer", backend.adapter()),
-        ("date", cli::now()),
-        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
-    ];
+    let meta = cli::provenance("split_sweep", &[], backend.adapter(), start);
     write_whole(&root.join("docs/SPLITS.md"), page::page(&meta, &records, &shared).as_bytes())
 }

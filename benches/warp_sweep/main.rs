@@ -60,15 +60,13 @@ fn measure(programme: &Programme, table: &Path) -> Result<Sweep, String> {
     if let Some(why) = why_not {
         println!("{why}");
     }
-    let meta = [("command", programme.command()), ("commit", cli::commit()), ("adapter", backend.adapter())];
-    let mut sweep = Sweep::new(&meta);
-    sweep.meta.push(("date".to_owned(), cli::now()));
+    let mut sweep = Sweep::default();
     for (set, assignment) in programme.assignments()? {
         measure::sweep(&mut backend, programme, set, &assignment, &mut sweep)?;
+        let meta = cli::provenance("warp_sweep", &programme.arguments(), backend.adapter(), start);
+        sweep.meta = meta.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
         sweep.write(table)?;
     }
-    sweep.meta.push(("took".to_owned(), format!("{:.0} s", start.elapsed().as_secs_f64())));
-    sweep.write(table)?;
     Ok(sweep)
 }
 

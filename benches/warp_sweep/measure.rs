@@ -1,11 +1,11 @@
 //! What is swept, and the sweep itself.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
 
 use antumbra::lab::case::Case;
-use antumbra::lab::comparison::Assignment;
+use antumbra::lab::comparison::{Assignment, shared_scenes};
 use antumbra::lab::experiment::{Backend, RunError, Studio};
+use antumbra::lab::files::with_extension;
 use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::{Truth, TruthCache};
 use antumbra::{Remix, Warp, techniques};
@@ -47,12 +47,9 @@ impl Programme {
         Self { quick, only }
     }
 
-    /// The command line that does this again.
-    pub(crate) fn command(&self) -> String {
-        let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-        let arguments: Vec<&str> = self.quick.then_some("--quick").into_iter().chain(self.only.as_deref()).collect();
-        let arguments = if arguments.is_empty() { String::new() } else { format!(" -- {}", arguments.join(" ")) };
-        format!("{scenes}cargo bench --bench warp_sweep{arguments}")
+    /// The arguments that ask for this.
+    pub(crate) fn arguments(&self) -> Vec<&str> {
+        self.quick.then_some("--quick").into_iter().chain(self.only.as_deref()).collect()
     }
 
     fn sizes(&self) -> &'static [u32] {
@@ -61,13 +58,9 @@ impl Programme {
 
     /// Sets, scenes and the cases of them that are swept.
     pub(crate) fn assignments(&self) -> Result<Vec<(&'static str, Assignment)>, String> {
-        let mut assignments = Vec::new();
-        if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
-            let scenes = Path::new(&scenes);
-            for path in glob(&scenes.join("../cases"), "json")? {
-                assignments.push(("shared", Assignment::of_case(&path)?));
-            }
-            for path in glob(scenes, "glb")? {
+        let mut assignments: Vec<_> = Assignment::shared()?.into_iter().map(|of| ("shared", of)).collect();
+        if let Some(scenes) = shared_scenes() {
+            for path in with_extension(&scenes, "glb")? {
                 assignments.push(("tour", Assignment::of_scene(&path.display().to_string())?));
             }
         }
@@ -87,17 +80,6 @@ impl Programme {
         assignments.retain(|(_, assignment)| !assignment.cases.is_empty());
         Ok(assignments)
     }
-}
-
-/// The files of a folder with an extension, by name.
-fn glob(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
-    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut found: Vec<PathBuf> = entries
-        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| path.extension().is_some_and(|found| found == extension))
-        .collect();
-    found.sort();
-    Ok(found)
 }
 
 /// Photographs every case of an assignment at every size with every strength and technique.

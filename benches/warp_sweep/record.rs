@@ -40,11 +40,6 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
-    pub(crate) fn new(meta: &[(&str, String)]) -> Self {
-        let meta = meta.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
-        Self { meta, records: Vec::new() }
-    }
-
     pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
         let mut text = String::new();
         for (name, value) in &self.meta {

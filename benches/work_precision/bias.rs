@@ -24,8 +24,8 @@ pub(crate) fn section(text: &mut String, biases: &Picture) {
 
 {}, one focused map of {SIDE} texels, linear depth, hardware 2×2, drawn by the software renderer. *Acne* is false shadow away from edges,
 *leak* light in shadow away from edges, % of {} pixels; *detachment* how far shadows begin from their casters, mean over {} contacts.
-Strengths by hand are the least that leave at most {} % acne, and the least that leave no more than the automatic bias: tuned to this one
-picture, which no engine can do. [BIAS.md](BIAS.md) has warped maps, projective depth and maps of back faces as well.
+Strengths by hand are the least that leave at most {} % acne, and the least that leave no more than the automatic bias, searched by halving
+(were acne to rise with strength somewhere, a still lesser one might do): tuned to this one picture, which no engine can do. [BIAS.md](BIAS.md) has warped maps, projective depth and maps of back faces as well.
 
 | bias | strength | acne | leak | wrong | detachment, px | detached contacts |
 |---|--:|--:|--:|--:|--:|--:|",

@@ -41,19 +41,30 @@ pub(crate) fn contenders(backend: &Backend) -> Vec<Contender> {
         .into_iter()
         .chain([Pcf::Point, Pcf::Box3x3, Pcf::Box7x7, Pcf::Disc].map(cascades))
         .chain([("cascades pcss".to_owned(), soft), ("cascades depth/w".to_owned(), over_w)]);
-    // The formats of moments that no named technique has.
-    let formats = [
-        ("vsm summed", MomentKind::Variance, MomentFormat::Summed),
-        ("evsm float16", MomentKind::ExponentialVarianceFour, MomentFormat::Float16),
-        ("msm unorm16", MomentKind::Hamburger, MomentFormat::Unorm16),
-        ("msm summed", MomentKind::Hamburger, MomentFormat::Summed),
-    ];
-    let formats = formats.map(|(name, kind, format)| {
-        let prefilter = Prefilter::of(Moments::new(kind, format));
-        (name.to_owned(), Remix { encoding: Encoding::Moments(prefilter), ..techniques::fsm() })
-    });
-    let all = named.chain(depths).chain(formats);
+    let all = named.chain(depths).chain(formats(backend));
     all.map(|(name, remix)| Contender { name, remix: backend.adapted(&remix) }).collect()
+}
+
+/// Kind and format of a remix's moments, if it has any.
+fn moments(remix: &Remix) -> Option<(MomentKind, MomentFormat)> {
+    match remix.encoding {
+        Encoding::Moments(Prefilter { moments, .. }) => Some((moments.kind(), moments.format())),
+        _ => None,
+    }
+}
+
+/// Every kind of moments in every format that no named technique has, focused, by both names. Formats that the
+/// adapter lacks are left out: they would be another contender once more.
+fn formats(backend: &Backend) -> impl Iterator<Item = (String, Remix)> {
+    let named: Vec<_> = techniques::NAMED.iter().filter_map(|(_, technique)| moments(&technique())).collect();
+    let of_kind = |kind: MomentKind| kind.formats().iter().map(move |format| (kind, *format));
+    let others = MomentKind::ALL.into_iter().flat_map(of_kind).filter(move |moments| !named.contains(moments));
+    others.filter_map(|(kind, format)| {
+        let prefilter = Prefilter::of(Moments::new(kind, format));
+        let remix = Remix { encoding: Encoding::Moments(prefilter), ..techniques::fsm() };
+        let has = moments(&backend.adapted(&remix)) == Some((kind, format));
+        has.then(|| (format!("{} {}", kind.name(), format.name()), remix))
+    })
 }
 
 /// Sizes that are drawn.
@@ -64,11 +75,7 @@ pub(crate) fn sizes(quick: bool) -> Vec<u32> {
 /// Whether a contender is drawn at a size. Sums and series of large maps take
 /// seconds on a software adapter.
 pub(crate) fn takes_part(contender: &Contender, size: u32) -> bool {
-    let slow = match contender.remix.encoding {
-        Encoding::Moments(Prefilter { moments, .. }) => {
-            moments.is_summed() || moments.kind() == MomentKind::Convolution
-        }
-        _ => false,
-    };
+    let slow = moments(&contender.remix)
+        .is_some_and(|(kind, format)| format == MomentFormat::Summed || kind == MomentKind::Convolution);
     FEW.contains(&contender.name.as_str()) || SIZES.contains(&size) && !(slow && size >= LARGE)
 }

@@ -28,9 +28,9 @@ use antumbra::lab::report::write_wide_csv;
 use contenders::{Contender, contenders, sizes};
 use measure::{Effort, Measured, Session, sets};
 
-/// Turns of the contenders, and those with large maps. Fewer leave quartiles to chance, more take longer than 20 minutes
-/// on two cores.
-const TURNS: [u32; 2] = [3, 3];
+/// Turns of the contenders: the fewest whose quartiles are not the extremes. Five take a full run on two cores to the
+/// 20 minutes that it may last.
+const TURNS: u32 = 3;
 
 /// Turns of the receivers beside nine comparisons, and those with large maps.
 const NINE_TURNS: [u32; 2] = [5, 3];
@@ -67,8 +67,8 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
     println!("{} ({})", backend.adapter(), backend.name());
     let contenders = contenders(&backend);
     let effort = if quick {
-        let turns = [QUICK_TURNS; 2];
-        Effort { sizes: sizes(quick), turns, nine_turns: turns, race_turns: QUICK_TURNS }
+        let turns = QUICK_TURNS;
+        Effort { sizes: sizes(quick), turns, nine_turns: [turns; 2], race_turns: turns }
     } else {
         Effort { sizes: sizes(quick), turns: TURNS, nine_turns: NINE_TURNS, race_turns: RACE_TURNS }
     };
@@ -87,23 +87,9 @@ fn run(quick: bool, only: Option<&str>) -> Result<(), String> {
     // Write the table, the curves and the page.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = root.join(if quick || only.is_some() { "target/work_precision" } else { "docs" });
-    let meta = meta(&backend, quick, only, start);
-    write_all(&folder, &meta, &contenders, &effort, &measured, &biases)
-}
-
-/// Where the numbers come from.
-fn meta(backend: &Backend, quick: bool, only: Option<&str>, start: Instant) -> Vec<(&'static str, String)> {
-    let scenes = if std::env::var_os("ANTUMBRA_SCENES").is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-    let profile = if cfg!(debug_assertions) { "test" } else { "bench" };
     let arguments: Vec<&str> = quick.then_some("--quick").into_iter().chain(only).collect();
-    let arguments = if arguments.is_empty() { String::new() } else { format!(" -- {}", arguments.join(" ")) };
-    vec![
-        ("command", format!("{scenes}cargo {profile} --bench work_precision{arguments}")),
-        ("commit", cli::commit()),
-        ("adapter", backend.adapter()),
-        ("date", cli::now()),
-        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
-    ]
+    let meta = cli::provenance("work_precision", &arguments, backend.adapter(), start);
+    write_all(&folder, &meta, &contenders, &effort, &measured, &biases)
 }
 
 fn write_all(

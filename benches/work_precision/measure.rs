@@ -1,6 +1,5 @@
 //! Photographs every contender of a case and a size in turns, and races the library against passes by hand.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use antumbra::lab::case::Case;
@@ -25,19 +24,12 @@ pub(crate) const RACE_SIZE: u32 = 1024;
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
     pub(crate) sizes: Vec<u32>,
-    /// Turns of the contenders, and those of maps of [`LARGE`] texels and more.
-    pub(crate) turns: [u32; 2],
-    /// Turns of the comparison with nine comparisons, likewise.
+    /// Turns of the contenders.
+    pub(crate) turns: u32,
+    /// Turns of the comparison with nine comparisons, and those of maps of [`LARGE`] texels and more.
     pub(crate) nine_turns: [u32; 2],
     /// Turns of a race: its medians are ratios of neighbours in time.
     pub(crate) race_turns: u32,
-}
-
-impl Effort {
-    /// Turns at a size.
-    fn turns(&self, size: u32) -> u32 {
-        self.turns[usize::from(size >= LARGE)]
-    }
 }
 
 impl Effort {
@@ -86,6 +78,9 @@ pub(crate) struct Measured {
     pub(crate) nine_taps: Vec<NineTaps>,
 }
 
+/// Name of the set of case files.
+pub(crate) const SHARED: &str = "shared";
+
 /// The built-in scenes, and the case files beside the folder of `ANTUMBRA_SCENES`, by the name of their set; only the
 /// cases whose name contains `only`, at most so many of each set.
 pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<Assignment>)>, String> {
@@ -93,15 +88,7 @@ pub(crate) fn sets(only: Option<&str>, most: usize) -> Result<Vec<(String, Vec<A
     for scene in ["treeline", "sparse-city"] {
         sets.push((scene.to_owned(), vec![Assignment::of_scene(scene)?]));
     }
-    if let Ok(scenes) = std::env::var("ANTUMBRA_SCENES") {
-        let folder = Path::new(&scenes).join("../cases");
-        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-        paths.retain(|path| path.extension().is_some_and(|found| found == "json"));
-        paths.sort();
-        let assignments = paths.iter().map(|path| Assignment::of_case(path)).collect::<Result<_, _>>()?;
-        sets.push(("shared".to_owned(), assignments));
-    }
+    sets.push((SHARED.to_owned(), Assignment::shared()?));
     for (set, assignments) in &mut sets {
         let mut left = most;
         for assignment in &mut *assignments {
@@ -156,7 +143,7 @@ impl Session<'_> {
             Studio::new(self.backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
         let present: Vec<&Contender> = self.contenders.iter().filter(|contender| takes_part(contender, size)).collect();
         let drawn: Vec<&dyn ShadowTechnique> = present.iter().map(|contender| &contender.remix as _).collect();
-        let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns(size));
+        let timed = studio.shoot_in_turns(&drawn, size, self.effort.turns);
         let ratios = SIZES.contains(&size).then(|| NineTaps {
             case: case.name.clone(),
             size,

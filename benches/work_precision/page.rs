@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use antumbra::lab::bias_matrix::Picture;
+use antumbra::lab::comparison::shared_scenes;
 use antumbra::lab::report::Row;
 
 use crate::contenders::{FEW, LARGE};
@@ -14,6 +15,10 @@ const HEAD: &str = "# Error against run time
 
 This page is written by the command below; every number on it comes from that run.
 ";
+
+/// Where there are no shared cases.
+const WITHOUT_SHARED: &str = "**The shared cases are missing**: `ANTUMBRA_SCENES` named no folder of scenes beside which they lie, and medians over \
+all pictures are of the built-in ones alone.\n\n";
 
 /// What the numbers do not say.
 const ITSELF: &str = "
@@ -45,7 +50,11 @@ pub(crate) fn page(
     text.push('\n');
     races::section(&mut text, measured, effort.race_turns);
     races::nine_taps(&mut text, measured, effort.nine_turns);
-    words(&mut text, effort);
+    words(&mut text, effort.turns);
+    if shared_scenes().is_none() {
+        text.push_str(WITHOUT_SHARED);
+    }
+
     for (set, cells) in measured.iter().zip(cells) {
         section(&mut text, set, cells);
     }
@@ -56,23 +65,22 @@ pub(crate) fn page(
 }
 
 /// What the tables hold.
-fn words(text: &mut String, effort: &Effort) {
+fn words(text: &mut String, turns: u32) {
+    let three = if turns == 3 { ", of three turns a quarter of that between the fastest and the slowest" } else { "" };
     let _ = writeln!(
         text,
         "## Techniques and encodings\n\n\
          Every named technique; `cascades` with every filter of depths (bilinear 2×2 is `cascades` itself), \
-         and with depth over w; and the formats of moments that no named technique has, focused. Contenders of one case and \
-         size were drawn turn by turn, {} times (from {LARGE} texels on {}), forwards and backwards in \
-         alternation. Summed-area tables and convolution maps are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
+         and with depth over w; and every kind of moments in every format that the adapter has and no named technique, \
+         focused and without mips. Contenders of one case and size were drawn turn by turn, {turns} times, forwards and backwards \
+         in alternation, after one that is not timed. Summed-area tables and convolution maps are drawn below {LARGE} texels alone, the smallest and the largest maps by {} alone. \
          Medians over the cases of a set:\n\n\
          - *excess*: mean absolute error against the area truth above that of a perfect hard edge, %; negative where filtering beats it;\n\
          - *wrong*: pixels more than half off the centre truth, %; *leak*: those of them that are lit, further than 2 px from edges, %;\n\
-         - *ms*: time of a frame (fit, casters, filter, receivers), median over turns, ± half the distance between the quartiles;\n\
+         - *ms*: time of a frame (fit, casters, filter, receivers), median over turns, ± half the distance between the quartiles{three};\n\
          - *MiB*: memory of the maps, with everything that fills them.\n\n\
          **Bold**: on the Pareto front of that error and time, over all contenders and sizes of the set. A run whose picture has {:.0} % wrong \
          pixels or more counts as failed, and a failed run as worse than all others.\n",
-        effort.turns[0],
-        effort.turns[1],
         FEW.map(|name| format!("`{name}`")).join(", "),
         100.0 * WORST_WRONG
     );
@@ -82,7 +90,8 @@ fn words(text: &mut String, effort: &Effort) {
 fn section(text: &mut String, set: &Measured, cells: &[Cell]) {
     let _ = writeln!(text, "### {}\n", set.set);
     for figure in &FIGURES {
-        let _ = writeln!(text, "![{} and time]({})\n", figure.name, plots::file(&set.set, figure));
+        let [front, all] = [true, false].map(|front| plots::file(&set.set, figure, front));
+        let _ = writeln!(text, "![{} and time, curves of the front]({front})\n\n[All curves]({all})\n", figure.name);
     }
     let headings = FIGURES.map(|figure| figure.name).join(" | ");
     let _ = writeln!(text, "| technique | size | {headings} | ms | MiB |\n|---|--:|--:|--:|--:|--:|--:|");

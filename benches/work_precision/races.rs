@@ -49,6 +49,11 @@ pub(crate) fn section(text: &mut String, measured: &[Measured], turns: u32) {
     let _ = writeln!(text, "| all | range | {} |\n", ranges.join(" | "));
 }
 
+/// Turns, and those of large maps where these are others.
+fn counts([turns, large]: [u32; 2]) -> String {
+    if large == turns { turns.to_string() } else { format!("{turns} (from {LARGE} texels on {large})") }
+}
+
 /// The receivers of `smra-plus` beside receivers of nine comparisons.
 pub(crate) fn nine_taps(text: &mut String, measured: &[Measured], turns: [u32; 2]) {
     let _ = writeln!(
@@ -56,8 +61,10 @@ pub(crate) fn nine_taps(text: &mut String, measured: &[Measured], turns: [u32; 2
         "## Receivers beside nine comparisons\n\n\
          Filter and receivers of `smra-plus` over receivers with a box of nine bilinear comparisons (`Pcf::Box5x5`): *maps*, in the same four \
          maps (`{}`); *one*, in one focused map (`{}`), whose receivers need not find their map. The three are \
-         drawn in turns, apart from all others: medians of {} ratios, each of neighbours in time (from {LARGE} texels on {}); below 1 `smra-plus` is cheaper.\n",
-        NINE_TAPS[0], NINE_TAPS[1], turns[0], turns[1]
+         drawn in turns, apart from all others: medians of {} ratios, each of neighbours in time; below 1 `smra-plus` is cheaper.\n",
+        NINE_TAPS[0],
+        NINE_TAPS[1],
+        counts(turns)
     );
     let mut sizes: Vec<u32> = measured.iter().flat_map(|set| &set.nine_taps).map(|ratio| ratio.size).collect();
     sizes.sort_unstable();

@@ -204,7 +204,9 @@ pub fn picture(
 }
 
 impl Studio<'_> {
-    /// The least strength that leaves at most so much acne, or the largest one.
+    /// The least strength that leaves at most so much acne, or the largest one; by halving the range, which finds the
+    /// least where acne falls with every step. Where it does not, one that leaves so little, and whose neighbour below
+    /// does not.
     fn tuned(&self, map: Map, way: Way, most: f64) -> Result<Cell, String> {
         let strengths = way.strengths();
         let (mut low, mut high) = (0, strengths.len() - 1);

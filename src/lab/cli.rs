@@ -2,10 +2,12 @@
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use std::time::Instant;
 
 use clap::ValueEnum;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
+use super::comparison::{SCENES, shared_scenes};
 use super::experiment::BackendChoice;
 use crate::remix::Remix;
 use crate::scene::MAX_SIDE;
@@ -115,14 +117,43 @@ fn civil(days: u64) -> [u64; 3] {
     [year_of_era + era * 400 + u64::from(month <= 2), month, day]
 }
 
-/// The commit this was built from, where git can tell.
+/// What a bench's results depend on. Others are not: a page that one bench writes says nothing of the next one.
+const SOURCES: [&str; 5] = ["src", "shaders", "benches", "Cargo.toml", "Cargo.lock"];
+
+/// The commit this was built from, where git can tell; `-dirty` where what a result depends on is not as committed.
 #[must_use]
 pub fn commit() -> String {
-    let mut git = Command::new("git");
-    match git.args(["describe", "--always", "--dirty"]).current_dir(env!("CARGO_MANIFEST_DIR")).output() {
-        Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let changed = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat());
+    match (git(&["describe", "--always", "--exclude=*"]), changed) {
+        (Some(commit), Some(changed)) => commit + if changed.is_empty() { "" } else { "-dirty" },
         _ => "unknown".to_owned(),
     }
+}
+
+/// The command line that runs a bench again, with what it saw of the environment.
+#[must_use]
+pub fn bench_command(bench: &str, arguments: &[&str]) -> String {
+    let scenes = if shared_scenes().is_some() { format!("{SCENES}=<folder> ") } else { String::new() };
+    let profile = if cfg!(debug_assertions) { "test" } else { "bench" };
+    let arguments = if arguments.is_empty() { String::new() } else { format!(" -- {}", arguments.join(" ")) };
+    format!("{scenes}cargo {profile} --bench {bench}{arguments}")
+}
+
+/// Where the numbers of a bench that began at `start` come from, by name: `command`, `commit`, `adapter`, `date` and
+/// `took`, the seconds until now.
+#[must_use]
+pub fn provenance(bench: &str, arguments: &[&str], adapter: String, start: Instant) -> Vec<(&'static str, String)> {
+    vec![
+        ("command", bench_command(bench, arguments)),
+        ("commit", commit()),
+        ("adapter", adapter),
+        ("date", now()),
+        ("took", format!("{:.0} s", start.elapsed().as_secs_f64())),
+    ]
 }
 
 #[cfg(test)]
@@ -134,6 +165,16 @@ mod tests {
         assert_eq!(civil(0), [1970, 1, 1]);
         assert_eq!(civil(11_016), [2000, 2, 29]);
         assert_eq!(civil(20_778), [2026, 11, 21]);
+    }
+
+    #[test]
+    fn a_page_says_where_it_comes_from() {
+        let page = provenance("b", &["--quick", "x"], "none".to_owned(), Instant::now());
+        let names: Vec<&str> = page.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["command", "commit", "adapter", "date", "took"]);
+        assert!(page[0].1.ends_with("--bench b -- --quick x"), "{}", page[0].1);
+        assert!(bench_command("b", &[]).ends_with("--bench b"));
+        assert_eq!((page[2].1.as_str(), page[4].1.as_str()), ("none", "0 s"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The main job: techniques × map sizes over scenes and cases, against the truth.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 use image::ExtendedColorType;
 
@@ -8,6 +9,7 @@ use super::case::{BUILT_IN_SCENES, Case, SceneSource};
 use super::cli::encode_png;
 use super::cpu::Visible;
 use super::experiment::{Backend, RunError, Shot, Studio, stage_names};
+use super::files::with_extension;
 use super::footprint::{COARSENESS, Measured};
 use super::metrics::{Scores, heat_map, mask_from_bytes};
 use super::report::{Picture, Row, SceneSection};
@@ -18,6 +20,32 @@ use super::treeline::treeline;
 use super::truth::Truth;
 use super::viewpoints::{sparse_city_viewpoints, treeline_viewpoints};
 use crate::remix::Remix;
+
+/// The environment variable that names the folder of shared scenes.
+pub(super) const SCENES: &str = "ANTUMBRA_SCENES";
+
+/// The folder of shared scenes, beside which their case files lie in `../cases`: what `ANTUMBRA_SCENES` names.
+#[must_use]
+pub fn shared_scenes() -> Option<PathBuf> {
+    std::env::var_os(SCENES).map(PathBuf::from)
+}
+
+/// The case files beside the folder of shared scenes, by name; none where `ANTUMBRA_SCENES` names no folder.
+///
+/// # Errors
+/// One line, where that folder cannot be read or holds no case.
+pub fn shared_case_files() -> Result<Vec<PathBuf>, String> {
+    shared_scenes().map_or_else(|| Ok(Vec::new()), |scenes| cases_in(&scenes.join("../cases")))
+}
+
+/// The case files of a folder, of which there must be one.
+fn cases_in(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let files = with_extension(folder, "json")?;
+    if files.is_empty() {
+        return Err(format!("{} holds no case; legal: at least one .json file", folder.display()));
+    }
+    Ok(files)
+}
 
 /// A scene and the cases that are photographed in it.
 #[derive(Debug)]
@@ -40,7 +68,7 @@ impl Assignment {
             "treeline" => (Subject::new(treeline()), treeline_viewpoints()),
             "sparse-city" => (Subject::new(sparse_city()), sparse_city_viewpoints()),
             file => {
-                let path = std::path::Path::new(file);
+                let path = Path::new(file);
                 if !path.exists() {
                     let built_in = BUILT_IN_SCENES.join(", ");
                     return Err(format!("scene is \"{file}\"; legal: {built_in}, or a .glb or .gltf file that exists"));
@@ -59,11 +87,19 @@ impl Assignment {
     ///
     /// # Errors
     /// One line that names the field and what is legal.
-    pub fn of_case(path: &std::path::Path) -> Result<Self, String> {
+    pub fn of_case(path: &Path) -> Result<Self, String> {
         let case = Case::load(path).map_err(|error| error.to_string())?;
         let source: SceneSource = case.scene_source().map_err(|error| error.to_string())?;
         let subject = Subject::load(&source).map_err(|error| error.to_string())?;
         Ok(Self { scene: subject.model.name.clone(), subject, cases: vec![case] })
+    }
+
+    /// Every shared case, by file name; none where `ANTUMBRA_SCENES` names no folder.
+    ///
+    /// # Errors
+    /// One line: the folder cannot be read or holds no case, or as of [`of_case`](Self::of_case).
+    pub fn shared() -> Result<Vec<Self>, String> {
+        shared_case_files()?.iter().map(|path| Self::of_case(path)).collect()
     }
 }
 
@@ -255,4 +291,20 @@ fn png_of(area: &[f32], case: &Case) -> Result<Vec<u8>, String> {
     let byte = |lit: &f32| (lit * f32::from(u8::MAX)).round() as u8;
     let bytes: Vec<u8> = area.iter().map(byte).collect();
     encode_png(&bytes, width, height, ExtendedColorType::L8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_without_cases_is_a_mistake() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(cases_in(folder.path()).unwrap_err().contains("holds no case"));
+        assert!(cases_in(&folder.path().join("none")).unwrap_err().contains("none"));
+        for name in ["b.json", "a.json", "read.me"] {
+            std::fs::write(folder.path().join(name), "{}").unwrap();
+        }
+        assert_eq!(cases_in(folder.path()).unwrap(), ["a.json", "b.json"].map(|name| folder.path().join(name)));
+    }
 }

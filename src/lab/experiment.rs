@@ -10,6 +10,7 @@ use super::cpu;
 use super::gpu::{Gpu, GpuScene, Race, RenderOptions, Renderer};
 use super::metrics::{MaskError, Scores, mask_from_bytes};
 use super::report::Row;
+use super::statistics::quantile;
 use super::subject::{Knowledge, Setting, Subject};
 use super::truth::Truth;
 use crate::encoding::stage::{Encoding, Prefilter, Radius};
@@ -361,7 +362,7 @@ fn texels(frame: &ShadowFrame) -> u64 {
 
 /// Median over batches of the mean time of a call, nanoseconds.
 fn median_fit_ns(mut fit: impl FnMut() -> bool) -> f64 {
-    let mut batches: Vec<f64> = (0..FIT_BATCHES)
+    let batches: Vec<f64> = (0..FIT_BATCHES)
         .map(|_| {
             let start = Instant::now();
             for _ in 0..FIT_BATCH {
@@ -370,6 +371,5 @@ fn median_fit_ns(mut fit: impl FnMut() -> bool) -> f64 {
             start.elapsed().as_secs_f64() * 1e9 / f64::from(FIT_BATCH)
         })
         .collect();
-    batches.sort_by(f64::total_cmp);
-    batches[FIT_BATCHES / 2]
+    quantile(&batches, 0.5)
 }

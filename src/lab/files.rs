@@ -1,7 +1,7 @@
 //! Writing files so that nothing half-written is left behind.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
@@ -22,6 +22,21 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), String> {
     file.write_all(content).map_err(|error| problem(path, &error))?;
     file.persist(path).map_err(|error| problem(path, &error.error))?;
     Ok(())
+}
+
+/// The files of a folder with an extension (no dot), by name.
+///
+/// # Errors
+/// One line that names the folder.
+pub fn with_extension(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
+    let unreadable = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        found.push(entry.map_err(unreadable)?.path());
+    }
+    found.retain(|path| path.extension().is_some_and(|found| found == extension));
+    found.sort();
+    Ok(found)
 }
 
 /// A temporary file in the folder that a path is in.

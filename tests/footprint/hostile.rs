@@ -2,7 +2,7 @@
 
 use antumbra::aliasing::{PointFootprint, footprint_at, perspective_at};
 use antumbra::warp::Warp;
-use antumbra::{Remix, ShadowFrame, ShadowTechnique, techniques};
+use antumbra::{Remix, ShadowFrame, ShadowTechnique, ViewUniforms, techniques};
 use glam::{DVec2, DVec3, Vec4};
 use proptest::prelude::*;
 
@@ -10,15 +10,19 @@ use crate::common::tally::Tally;
 use crate::common::{Inputs, direction, in_view, inputs, view_point};
 use crate::sight::{Sight, differences, doubt, pixel_size, singular};
 
-/// The named techniques as they come, as published, and warps of every strength.
+/// The named techniques of one map as they come, as published, and warps of every strength.
 fn remixes() -> impl Strategy<Value = Remix> {
-    // Of one map: what several predict, they predict for all of them.
     let one = techniques::NAMED.iter().filter(|(_, technique)| technique().split == antumbra::Split::One);
     let named = (prop::sample::select(one.collect::<Vec<_>>()), any::<bool>());
     prop_oneof![
         3 => named.prop_map(|((_, technique), guard)| Remix { guard, ..technique() }),
         1 => (-2.0..3.0_f32).prop_map(|log| Remix { warp: Warp::Fixed { strength: 10.0_f32.powf(log) }, ..Remix::default() }),
     ]
+}
+
+/// The composites as well, whose maps each have a footprint.
+fn with_composites() -> impl Strategy<Value = Remix> {
+    prop_oneof![8 => remixes(), 1 => Just(techniques::smra()), 1 => Just(techniques::smra_plus())]
 }
 
 fn shares() -> impl Strategy<Value = [f64; 3]> {
@@ -29,26 +33,27 @@ fn fit(inputs: &Inputs, remix: &Remix) -> Option<ShadowFrame> {
     remix.fit(&inputs.fit_input()).ok().filter(|frame| !frame.views.is_empty())
 }
 
-fn at(frame: &ShadowFrame, inputs: &Inputs, position: DVec3, normal: DVec3) -> Option<PointFootprint> {
-    footprint_at(&frame.uniforms.views[0], inputs.side, &inputs.camera, inputs.origin, position, normal)
+fn at(view: &ViewUniforms, inputs: &Inputs, position: DVec3, normal: DVec3) -> Option<PointFootprint> {
+    footprint_at(view, inputs.side, &inputs.camera, inputs.origin, position, normal)
 }
 
-/// Cases, those with a footprint, those of a warped map, and those in which J is known to the last of the digits asked
-/// for.
-static REACHED: Tally<4> = Tally::new();
+/// Cases, those with a footprint, those of a warped map, those in which J is known to the last of the digits asked for,
+/// and the last map of several that had one.
+static REACHED: Tally<5> = Tally::new();
 
 #[test]
 fn footprints_are_what_neighbouring_rays_see() {
     over_hostile_frames();
-    let [cases, found, warped, sharp] = REACHED.read();
+    let [cases, found, warped, sharp, last] = REACHED.read();
     println!("{cases} cases, {found} with a footprint, {warped} of them warped, {sharp} compared to 1e-6");
     assert!(found * 5 > cases && warped * 10 > found && sharp * 3 > found, "{cases} {found} {warped} {sharp}");
+    assert!(last > 0, "no map but the first one");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40_000, max_shrink_iters: 500, ..ProptestConfig::default() })]
 
-    fn over_hostile_frames(inputs in inputs(), remix in remixes(), shares in shares(), free in direction(), on_axis in any::<bool>()) {
+    fn over_hostile_frames(inputs in inputs(), remix in with_composites(), which in any::<prop::sample::Index>(), shares in shares(), free in direction(), on_axis in any::<bool>()) {
         REACHED.count(0);
         let inputs = Inputs { casters: inputs.receivers, ..inputs };
         let Some(frame) = fit(&inputs, &remix) else { return Ok(()) };
@@ -56,9 +61,11 @@ proptest! {
         let position = seen - inputs.origin;
         // Often a floor or a wall, else anything.
         let normal = if on_axis { DVec3::Y } else { free };
-        let Some(found) = at(&frame, &inputs, position, normal) else { return Ok(()) };
+        let which = which.index(frame.views.len());
+        let view = &frame.uniforms.views[which];
+        let Some(found) = at(view, &inputs, position, normal) else { return Ok(()) };
         REACHED.count(1);
-        let view = &frame.uniforms.views[0];
+        REACHED.raise(4, which as u32);
         let sight = Sight::new(&inputs.camera, inputs.origin, position, normal);
         let Some(columns) = differences(view, inputs.side, &inputs.camera, position, &sight) else { return Ok(()) };
         let (least, most, determinant) = singular(columns);

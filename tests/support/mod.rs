@@ -5,6 +5,8 @@ pub(crate) mod compute;
 
 use std::path::PathBuf;
 
+use antumbra::lab::case::{Case, CaseCamera, CaseLight};
+use antumbra::lab::comparison::{shared_case_files, shared_scenes};
 use antumbra::lab::gpu::Gpu;
 use antumbra::lab::scene::{Cutout, SOLID, SceneModel};
 use antumbra::{Aabb, Camera};
@@ -139,10 +141,29 @@ fn is_hole(model: &SceneModel, triangle: usize, u: f64, v: f64) -> bool {
     f32::from(alpha) / 255.0 < cutout.cutoff
 }
 
+/// A camera and a sun (its `travel` of any length) over geometry that a test makes; shadows as far as the camera sees.
+pub(crate) fn case_over(camera: CaseCamera, travel: DVec3, viewport: [u32; 2]) -> Case {
+    let case = Case {
+        name: "made here".into(),
+        scene: "made here".into(),
+        camera,
+        light: CaseLight::Directional { travel: travel.normalize() },
+        viewport,
+        shadow_distance: camera.far,
+        folder: PathBuf::new(),
+    };
+    case.check().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What the manual says of a measurement is what is measured, so that it cannot go stale unnoticed.
+pub(crate) fn as_quoted(what: &str, measured: f64, quoted: f64, within: f64) {
+    assert!((measured - quoted).abs() <= within, "{what}: {measured}, and README.md says {quoted} (± {within})");
+}
+
 /// The folder of the third-party scenes, beside which their cases lie in `../cases`; none, said aloud, where
 /// `ANTUMBRA_SCENES` does not name it.
 pub(crate) fn scenes() -> Option<PathBuf> {
-    let scenes = std::env::var_os("ANTUMBRA_SCENES").map(PathBuf::from);
+    let scenes = shared_scenes();
     if scenes.is_none() {
         let thread = std::thread::current();
         println!("SKIPPED {}: ANTUMBRA_SCENES does not name the shared scenes", thread.name().unwrap_or("test"));
@@ -152,14 +173,5 @@ pub(crate) fn scenes() -> Option<PathBuf> {
 
 /// The shared case files; none where there are no scenes.
 pub(crate) fn shared_cases() -> Vec<PathBuf> {
-    let Some(scenes) = scenes() else { return Vec::new() };
-    let folder = scenes.join("../cases");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
-        .map(|entry| entry.expect("a readable entry").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-        .collect();
-    files.sort();
-    assert!(!files.is_empty(), "{} holds no case", folder.display());
-    files
+    scenes().map_or_else(Vec::new, |_| shared_case_files().unwrap_or_else(|error| panic!("{error}")))
 }

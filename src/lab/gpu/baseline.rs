@@ -2,13 +2,14 @@
 
 use glam::{Mat4, Vec3};
 
-use super::clock::{Clock, Stamps, Stopwatch, median};
+use super::clock::{Clock, Stamps, Stopwatch};
 use super::pipelines::{self, Host, Pair};
 use super::render::Shot;
 use super::{Gpu, GpuFailure, GpuScene, Renderer};
 use crate::camera::Camera;
 use crate::frame::{ShadowFrame, ShadowView};
 use crate::gpu::{DEPTH_FORMAT, ShadowMaps};
+use crate::lab::statistics::quantile;
 
 /// The library's passes beside passes written by hand, drawn turn by turn in the same picture.
 ///
@@ -151,7 +152,7 @@ impl Runs {
     }
 
     fn summary(&self, clock: Clock) -> Race {
-        let of = |figure: &dyn Fn(&Turn) -> f64| median(&mut self.0.iter().map(figure).collect::<Vec<_>>());
+        let of = |figure: &dyn Fn(&Turn) -> f64| quantile(&self.0.iter().map(figure).collect::<Vec<_>>(), 0.5);
         let ms = |entrant: Entrant| of(&|times| times[entrant as usize]);
         let ratio = |ours: Entrant, theirs: Entrant| of(&|times| times[ours as usize] / times[theirs as usize]);
         Race {

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::{Gpu, GpuFailure, readback};
+use crate::lab::statistics::quantile;
 
 /// Which clock measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +31,7 @@ impl PassTimes {
     /// Each pass's median over repetitions; NaN of none.
     #[must_use]
     pub fn median(times: &[Self], clock: Clock) -> Self {
-        let of = |pass: fn(&Self) -> f64| median(&mut times.iter().map(pass).collect::<Vec<_>>());
+        let of = |pass: fn(&Self) -> f64| quantile(&times.iter().map(pass).collect::<Vec<_>>(), 0.5);
         let (casters_ms, filter_ms) = (of(|times| times.casters_ms), of(|times| times.filter_ms));
         Self { casters_ms, filter_ms, receivers_ms: of(|times| times.receivers_ms), clock }
     }
@@ -127,16 +128,5 @@ impl<'a> Stopwatch<'a> {
         // 2^53 ticks are months: exact.
         let nanoseconds = ticks as f64 * f64::from(self.gpu.queue().get_timestamp_period());
         Ok(nanoseconds * 1e-6)
-    }
-}
-
-/// The median; NaN of nothing.
-pub(super) fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => f64::NAN,
-        odd if odd % 2 == 1 => values[middle],
-        _ => 0.5 * (values[middle - 1] + values[middle]),
     }
 }
