@@ -101,7 +101,8 @@ fn displacements(set: Set, size: u32) -> ([f64; 6], String) {
     (means, if unseen == 0 { String::new() } else { format!(" ({unseen} pictures of all six have none)") })
 }
 
-/// Classes whose first number is compared with the standard map's. Continuity is not: that map does not have the artefact.
+/// Classes whose first number is compared with the standard map's. Continuity is not: that map does not have the
+/// artefact.
 const COMPARED: [usize; 5] = [0, 1, 2, 3, 5];
 
 /// What a mark of ✓ leaves at most, and one of ✗ at least, as a share of the standard map's number.
@@ -170,7 +171,7 @@ fn continuity(text: &mut String) -> Result<(), String> {
     let lost = |jumps: &[Jumps]| jumps.iter().map(|jumps| jumps.gained_or_lost).sum::<usize>();
     let _ = writeln!(
         text,
-        "\nPSSM's ✗ for continuity is that of maps fitted to the objects in the picture, as they were published: in the same {FRAMES} frames, with maps of {SIDE} texels, these jump \
+        "\nPSSM's ✗ for continuity is that of maps fitted to the objects in the picture, as they were published: in the same {FRAMES} frames of that scene, with maps of {SIDE} × {SIDE} texels, these jump \
          by {:.1} %. Fitted to the scene, as all are here, PSSM jumps by {:.1} %, {SMRA} by {:.1} %, {PLUS} by {:.1} %: {:.3}, {:.3} and {:.3} times that. At most {SMALL_JUMP} \
          times: for {SMRA} {}, for {PLUS} {}. Places that gain or lose their map from one frame to the next: {} under the three, {} under the maps fitted to objects.",
         percent(&greedy),

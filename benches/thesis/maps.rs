@@ -15,8 +15,9 @@ use crate::programme::{PLUS, SSM, TSM, main_techniques};
 /// Side of the maps that are drawn to be looked at, texels: twice that of their pictures.
 const SIDE: u32 = 600;
 
-/// Brightest grey of what is nearest to the light, and of what is farthest; where nothing is, it is white.
+/// Greys of what is nearest to the light, and of what is farthest; and where nothing is drawn. 8-bit sRGB.
 const GREYS: [f32; 2] = [24.0, 224.0];
+const NOTHING: [u8; 3] = [176, 204, 232];
 
 /// Lines, and what is seen; 8-bit sRGB.
 const FRUSTUM: [u8; 3] = [255, 255, 255];
@@ -72,9 +73,9 @@ impl<'a> MapSight<'a> {
         let frame = self.fitted(name, size)?;
         let Setting { camera, origin, .. } = &self.setting;
         Ok(picture.tinted(|pixel| {
-            let Some(hit) = self.visible.pixel(pixel) else { return [u8::MAX; 3] };
+            let hit = self.visible.pixel(pixel)?;
             let serving = serving(&frame, camera, *origin, hit.position, hit.normal);
-            serving.and_then(|view| SERVED.get(view).copied()).unwrap_or(UNSERVED)
+            Some(serving.and_then(|view| SERVED.get(view).copied()).unwrap_or(UNSERVED))
         }))
     }
 
@@ -99,8 +100,7 @@ impl<'a> MapSight<'a> {
         let [low, high] = drawn.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], d| [low.min(*d), high.max(*d)]);
         let grey = |depth: &f32| {
             let share = (depth - low) / (high - low).max(f32::MIN_POSITIVE);
-            let grey = if *depth < empty { GREYS[0] + (GREYS[1] - GREYS[0]) * share } else { 255.0 };
-            [grey.round() as u8; 3]
+            if *depth < empty { [(GREYS[0] + (GREYS[1] - GREYS[0]) * share).round() as u8; 3] } else { NOTHING }
         };
         let side = SIDE as usize;
         Picture { width: side, height: side, pixels: target.depth.iter().map(grey).collect() }
@@ -115,7 +115,7 @@ impl<'a> MapSight<'a> {
                 seen[pixel] = true;
             }
         }
-        *picture = picture.tinted(|pixel| if seen[pixel] { SEEN } else { [u8::MAX; 3] });
+        *picture = picture.tinted(|pixel| seen[pixel].then_some(SEEN));
     }
 
     /// Draws the edges of the camera's frustum.

@@ -114,11 +114,11 @@ impl Picture {
         Self { width, height, pixels: rows.copied().collect() }
     }
 
-    /// In other colours: each pixel's is as bright as it was. White leaves greys.
-    pub(crate) fn tinted(&self, colour: impl Fn(usize) -> [u8; 3]) -> Self {
-        let tint = |(pixel, [r, g, b]): (usize, &[u8; 3])| {
-            let grey = f32::from(*r.max(g).max(b)) / f32::from(u8::MAX);
-            colour(pixel).map(|channel| (f32::from(channel) * grey).round() as u8)
+    /// In other colours, where there are any: each pixel stays as bright as it was.
+    pub(crate) fn tinted(&self, colour: impl Fn(usize) -> Option<[u8; 3]>) -> Self {
+        let tint = |(pixel, old): (usize, &[u8; 3])| {
+            let grey = f32::from(old[0].max(old[1]).max(old[2])) / f32::from(u8::MAX);
+            colour(pixel).map_or(*old, |new| new.map(|channel| (f32::from(channel) * grey).round() as u8))
         };
         Self { pixels: self.pixels.iter().enumerate().map(tint).collect(), ..*self }
     }

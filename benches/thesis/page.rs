@@ -42,8 +42,8 @@ const TABLE_ONE: &str = "
 
 A number for each class, with the mark of the thesis (✓ tackled, ✗ present, – does not have it) behind it; the least is the best. Built-in scenes, all
 viewpoints, maps of the smallest size unless the line says otherwise. *The light grazes*: from 80° on. *Jump*: from frame to frame in
-the middle of the picture, at six depths, while the head turns and a large building enters it (figure 15); where planes move, a place may
-be served by another map.
+the middle of the picture, at six depths, in a scene of its own, which the tests have as well (`lab::entering`): ground in tiles, a palm, and a
+large building that enters while the head turns (figure 15); where planes move, a place may be served by another map.
 ";
 
 const TABLE_TWO: &str = "
@@ -101,8 +101,8 @@ fn figures(text: &mut String, set: Set) {
             text,
             "\n![{scene} by technique](thesis/{scene}-techniques.jpg)\n\n*{scene}/{case} at {smallest}, as figures 47, 48, 51 and 53 to 56 have it: no shadows, one technique at a time, and the \
              truth.*\n\n![{scene}, maps](thesis/{scene}-maps.jpg)\n\n*{scene}/{case}, what lies behind it. Above, as figures 49 and 50 have it, maps with the contrast stretched to what is in them, \
-             dark near to the light: the standard map, in it what is seen (orange), the camera's frustum (white), and what TSM's map covers (violet); then SSM's, TSM's, and the first one of \
-             SMRA plus. Below, as figure 52 has it: the truth, and by the colour of the map that serves a pixel (orange, blue, green, purple from the first on; grey none) PSSM and SMRA \
+             dark near to the light, pale blue where nothing is drawn: the standard map, in it what is seen (orange), the camera's frustum (white), and what TSM's map covers (violet); then SSM's, TSM's, and the first one of \
+             SMRA plus. Below, as figure 52 has it: the truth, and in the colour of the map that serves a pixel (orange, blue, green, purple from the first on; grey: none) PSSM and SMRA \
              plus at {smallest}.*\n\n![{scene} by technique and size](thesis/{scene}-sizes.jpg)\n\n*{scene}/{case}, techniques by size of map, as figures {figures}, and SMRA plus.*"
         );
     }

@@ -59,7 +59,7 @@ pub(crate) fn by_picture(text: &mut String, set: Set) {
             let Some(best) = set.best(ours, rivals, |r| r.mae) else { return "– | – | –".to_owned() };
             let ratio = ours.mae / best.mae;
             let mark = if ratio > NO_WORSE { "**" } else { "" };
-            let wide = if best.size == ours.size { String::new() } else { format!(" {}", best.size) };
+            let wide = if best.size == ours.size { String::new() } else { format!(" at {}", best.size) };
             format!("{:.3} | {}{wide} | {mark}{ratio:.3}{mark}", 100.0 * best.excess, best.name)
         };
         let (place, excess) = (place(ours), 100.0 * ours.excess);
@@ -161,8 +161,9 @@ impl<'a> Bout<'a> {
         } else {
             let _ = writeln!(
                 text,
-                "- The same by excess, over the {} pictures in which both are above 0: {:.3}, {}; {}.",
+                "- The same by excess, where both are above 0 ({} of {} pictures): {:.3}, {}; {}.",
                 excess.count,
+                error.count,
                 excess.mean,
                 holds(excess.mean <= MUCH_BETTER),
                 by_size(&|size| self.excess(size))
@@ -174,10 +175,11 @@ impl<'a> Bout<'a> {
         let lost = signs(true, false);
         let _ = writeln!(
             text,
-            "- Excess is negative where a filter beats a perfect hard edge, and ratios mean nothing there: SMRA plus alone is at or below 0 in {} pictures, both are in {}, \
+            "- Excess is negative where a filter beats a perfect hard edge, and ratios mean nothing there. Of {} pictures SMRA plus alone is at or below 0 in {}, both are in {}, \
              the best of the others alone in {lost}.\n\
-             - Nowhere more than {NO_WORSE} times the best of the others: by mean error {}, above in {} of {}; by excess {}, above in {} of {}, and at or below 0 are the others \
-             alone in {lost}.",
+             - Nowhere more than {NO_WORSE} times the best of the others: by mean error {}, above in {} of {}; by excess {}, above in {} of {} with both above 0, and at or below 0 \
+             are the others alone in {lost}.",
+            error.count,
             signs(false, true),
             signs(false, false),
             holds(error.above(NO_WORSE) == 0),

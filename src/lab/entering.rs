@@ -1,5 +1,5 @@
-//! A large building enters the picture while the head turns (figure 15 of the thesis): texels of maps that are fitted to
-//! the objects in view change at once, those of maps that are fitted to the scene need not.
+//! A large building enters the picture while the head turns (figure 15 of the thesis): texels of maps that are fitted
+//! to the objects in view change at once, those of maps that are fitted to the scene need not.
 //!
 //! # References
 //! - J. Abrantes de Oliveira, *Analysis and proposal of a shadow mapping remix approach*: the continuity problem.
