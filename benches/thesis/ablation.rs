@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use antumbra::lab::statistics::mean;
 
 use crate::duel::{Duel, Set};
-use crate::measure::Record;
+use crate::measure::{Record, Times};
 use crate::programme::{STEP_SIDE, steps};
 
 /// Bytes of a MiB.
@@ -24,6 +24,7 @@ pub(crate) fn table(text: &mut String, set: Set) {
     for step in steps() {
         let of =
             |figure: &dyn Fn(&Record) -> f64| mean(&set.of(step.name, Some(STEP_SIDE)).map(figure).collect::<Vec<_>>());
+        let time = |figure: &dyn Fn(&Times) -> f64| of(&|r| r.times.as_ref().map_or(f64::NAN, figure));
         let pairs = set.of(step.name, Some(STEP_SIDE)).filter_map(|r| Some((r, set.beside(r, step.from)?)));
         let duel = Duel::of(pairs, |r| r.mae);
         let (ratio, lower) = if duel.count == 0 {
@@ -43,7 +44,7 @@ pub(crate) fn table(text: &mut String, set: Set) {
         };
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {:.1} | {:.3} | {:.3} | {ratio} | {lower} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.1} |",
+            "| {} | {} | {} | {:.1} | {:.3} | {:.3} | {ratio} | {lower} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} ± {:.1} | {:.1} |",
             step.name,
             step.change,
             if step.from.is_empty() { "–" } else { step.from },
@@ -53,14 +54,22 @@ pub(crate) fn table(text: &mut String, set: Set) {
             100.0 * of(&|r| r.wrong),
             100.0 * of(&|r| r.leak),
             100.0 * of(&|r| r.acne),
-            1000.0 * of(&|r| r.times.fit),
-            of(&|r| r.times.total()),
+            1000.0 * time(&|times| times.fit),
+            time(&|times| times.total),
+            time(&|times| times.spread),
             of(&|r| r.bytes as f64) / MEBI
         );
     }
     let _ = writeln!(text, "\nSteps that lower the mean error: {}.", list(&pay));
     let _ = writeln!(text, "\nSteps that raise it: {}.", list(&cost));
     let _ = writeln!(text, "\nSteps that change it by less than {} %: {}.", 100.0 * NOTICEABLE, list(&same));
+}
+
+/// Fewest turns of any picture of it.
+pub(crate) fn least_turns(set: Set) -> usize {
+    let steps = steps();
+    let timed = steps.iter().flat_map(|step| set.of(step.name, Some(STEP_SIDE))).filter_map(|record| record.times);
+    timed.map(|times| times.turns).min().unwrap_or_default()
 }
 
 fn list(sentences: &[String]) -> String {

@@ -6,8 +6,8 @@ use antumbra::lab::statistics::mean;
 
 use crate::duel::{Duel, Set};
 use crate::measure::Record;
-use crate::pictures::Shown;
-use crate::programme::{CONTRIBUTORS, FOCUSED, GUARDED, PSSM, SIX, SMRA, UNFILTERED};
+use crate::pictures::{ERROR_COLOURS, Shown};
+use crate::programme::{CONTRIBUTORS, PSSM, SMRA, UNFILTERED};
 
 /// What "far" asks for: mean error over that of the best contributor. At 1 any gain would do; at ½ hardly any would.
 const FAR: f64 = 0.8;
@@ -25,8 +25,11 @@ pub(crate) fn most_harm(records: &[Record]) -> Result<Shown, String> {
 /// Errors of every technique at every size, mean over viewpoints.
 pub(crate) fn table(text: &mut String, set: Set, scene: Option<&str>, names: &[&str]) {
     text.push_str("\n| technique | size | excess, % | mean error, % | wrong, % | leak, % | acne, % |\n|---|--:|--:|--:|--:|--:|--:|\n");
+    let mut sizes: Vec<u32> = set.all().map(|record| record.size).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
     for name in names {
-        for size in set.sizes() {
+        for &size in &sizes {
             let here = |record: &&Record| scene.is_none_or(|scene| record.scene == scene);
             let these: Vec<&Record> = set.of(name, Some(size)).filter(here).collect();
             if these.is_empty() {
@@ -45,15 +48,6 @@ pub(crate) fn table(text: &mut String, set: Set, scene: Option<&str>, names: &[&
             );
         }
     }
-}
-
-/// All techniques of the main table, in its order.
-pub(crate) fn names() -> Vec<&'static str> {
-    let mut names = SIX.to_vec();
-    names.splice(2..2, [GUARDED]);
-    let at = names.len() - 2;
-    names.splice(at..at, [FOCUSED, UNFILTERED]);
-    names
 }
 
 /// SMRA against each contributor, and against the best of them.
@@ -78,8 +72,9 @@ pub(crate) fn far_superior(text: &mut String, set: Set) {
             leaks.join(", ")
         );
     }
+    let contributors = CONTRIBUTORS.map(|name| (name, 1));
     let best = |figure: fn(&Record) -> f64| {
-        Duel::of(set.of(SMRA, None).filter_map(|ours| Some((ours, set.best(ours, &CONTRIBUTORS, figure)?))), figure)
+        Duel::of(set.of(SMRA, None).filter_map(|ours| Some((ours, set.best(ours, &contributors, figure)?))), figure)
     };
     let (error, wrong) = (best(|r| r.mae), best(|r| r.wrong));
     let verdict = if error.lower == error.count && error.mean <= FAR {
@@ -140,8 +135,8 @@ pub(crate) fn trapezoids(text: &mut String, set: Set, shown: &Shown) {
     let _ = writeln!(
         text,
         "\n![Where trapezoids cost most](thesis/why.jpg)\n\n*{name}, the picture in which the trapezoids cost most (or gain least) at that size, where \
-         the two differ most. Above: {PSSM}, {UNFILTERED}, {SMRA}; below: their errors, red where light leaks, blue where shadow is false. Wrong \
-         pixels of the whole picture: {:.2} %, {:.2} %, {:.2} %.*",
+         the two differ most. Above: {PSSM}, {UNFILTERED}, {SMRA}; below, their errors: {ERROR_COLOURS}. Wrong pixels \
+         of the whole picture: {:.2} %, {:.2} %, {:.2} %.*",
         find(PSSM),
         find(UNFILTERED),
         find(SMRA)

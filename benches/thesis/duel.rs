@@ -3,6 +3,7 @@
 use antumbra::lab::statistics::geometric_mean;
 
 use crate::measure::Record;
+use crate::programme::{PLUS, Rival};
 
 /// Figures below this count as this where a ratio is taken: half a pixel of 800 × 600, or a mean error of as much.
 const LEAST: f64 = 1e-6;
@@ -33,9 +34,9 @@ impl<'a> Set<'a> {
         self.of(name, Some(size)).find(|other| other.scene == record.scene && other.case == record.case)
     }
 
-    /// The one with the least of a figure among techniques that saw the same picture.
-    pub(crate) fn best(self, record: &Record, names: &[&str], figure: fn(&Record) -> f64) -> Option<&'a Record> {
-        let found = names.iter().filter_map(|name| self.beside(record, name));
+    /// The one with the least of a figure among those that saw the same view.
+    pub(crate) fn best(self, record: &Record, rivals: &[Rival], figure: fn(&Record) -> f64) -> Option<&'a Record> {
+        let found = rivals.iter().filter_map(|(name, times)| self.sized(record, name, times * record.size));
         found.min_by(|a, b| figure(a).total_cmp(&figure(b)))
     }
 
@@ -45,9 +46,9 @@ impl<'a> Set<'a> {
         antumbra::lab::statistics::mean(&values)
     }
 
-    /// Sizes there are, ascending.
+    /// Sizes of the maps of SMRA plus, ascending: those that all have but for the wide ones.
     pub(crate) fn sizes(self) -> Vec<u32> {
-        let mut sizes: Vec<u32> = self.all().map(|record| record.size).collect();
+        let mut sizes: Vec<u32> = self.of(PLUS, None).map(|record| record.size).collect();
         sizes.sort_unstable();
         sizes.dedup();
         sizes

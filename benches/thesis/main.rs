@@ -10,6 +10,7 @@ mod artefacts;
 mod claims;
 mod classes;
 mod duel;
+mod maps;
 mod measure;
 mod montage;
 mod page;
@@ -17,6 +18,7 @@ mod peers;
 mod pictures;
 mod plus;
 mod programme;
+mod times;
 
 use std::path::Path;
 use std::time::Instant;
@@ -50,7 +52,6 @@ fn run() -> Result<(), String> {
     let mut results = Results::default();
     measure::built_in(&mut backend, &programme, &mut results)?;
     measure::shared(&mut backend, &programme, &mut results)?;
-    measure::time(&mut backend, &programme, &mut results)?;
     // Write pictures, then the page that shows them.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let docs = if programme.quick { root.join("target/thesis") } else { root.join("docs") };

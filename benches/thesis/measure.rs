@@ -5,49 +5,43 @@ use std::collections::HashMap;
 use antumbra::lab::case::Case;
 use antumbra::lab::comparison::Assignment;
 use antumbra::lab::cpu::Visible;
-use antumbra::lab::experiment::{Backend, Shot, Studio};
+use antumbra::lab::experiment::{Backend, RunError, Shot, Studio, Timed};
 use antumbra::lab::footprint::Measured;
 use antumbra::lab::statistics::quantile;
 use antumbra::lab::subject::Setting;
 use antumbra::lab::truth::{CacheUse, Truth, TruthCache};
-use antumbra::{Light, Remix};
+use antumbra::{Light, ShadowTechnique};
 
 use crate::artefacts::Artefacts;
-use crate::programme::{Named, Programme, SHOWN, STEP_SIDE, Step, main_techniques, six, steps};
+use crate::programme::{Named, Programme, SHOWN, STEP_SIDE, Step, main_techniques, shared_techniques, steps, wide};
 
-/// Times of one picture, milliseconds.
-#[derive(Clone, Copy, Debug, Default)]
+/// Times of one picture, milliseconds: medians of turns.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Times {
     pub(crate) fit: f64,
     pub(crate) casters: f64,
     pub(crate) filter: f64,
     pub(crate) receivers: f64,
+    /// Of the turns' own sums, and half the distance between their quartiles.
+    pub(crate) total: f64,
+    pub(crate) spread: f64,
+    /// How many there were.
+    pub(crate) turns: usize,
 }
 
 impl Times {
-    pub(crate) fn of(shot: &Shot) -> Self {
-        let Shot { fit_ns, casters_ms, filter_ms, receivers_ms, .. } = *shot;
-        Self { fit: fit_ns * 1e-6, casters: casters_ms, filter: filter_ms, receivers: receivers_ms }
-    }
-
-    pub(crate) fn total(&self) -> f64 {
-        self.fit + self.casters + self.filter + self.receivers
+    fn of(timed: &Timed) -> Self {
+        let Shot { fit_ns, casters_ms, filter_ms, receivers_ms, .. } = timed.shot;
+        let fit = 1e-6 * fit_ns;
+        let totals: Vec<f64> = timed.passes.iter().map(|turn| fit + turn.iter().sum::<f64>()).collect();
+        let [low, total, high] = [0.25, 0.5, 0.75].map(|share| quantile(&totals, share));
+        let (casters, filter, receivers) = (casters_ms, filter_ms, receivers_ms);
+        Self { fit, casters, filter, receivers, total, spread: 0.5 * (high - low), turns: totals.len() }
     }
 
     /// By name, in the order in which they are done.
     pub(crate) fn passes(&self) -> [(&'static str, f64); 4] {
         [("fit", self.fit), ("casters", self.casters), ("filter", self.filter), ("receivers", self.receivers)]
-    }
-
-    /// Pass by pass.
-    pub(crate) fn median(all: &[Self]) -> Self {
-        let of = |pass: fn(&Self) -> f64| quantile(&all.iter().map(pass).collect::<Vec<_>>(), 0.5);
-        Self {
-            fit: of(|t| t.fit),
-            casters: of(|t| t.casters),
-            filter: of(|t| t.filter),
-            receivers: of(|t| t.receivers),
-        }
     }
 }
 
@@ -69,10 +63,12 @@ pub(crate) struct Record {
     pub(crate) wrong: f64,
     /// Wrong pixels of the near, middle and far third.
     pub(crate) thirds: [f64; 3],
-    pub(crate) edge_px: f64,
+    /// Displacement of edges, pixels; none where no edge can be followed.
+    pub(crate) edge_px: Option<f64>,
     pub(crate) leak: f64,
     pub(crate) acne: f64,
-    pub(crate) times: Times,
+    /// Where they are reported.
+    pub(crate) times: Option<Times>,
     pub(crate) bytes: u64,
     /// Of the smallest maps on the thesis's scenes alone.
     pub(crate) artefacts: Option<Artefacts>,
@@ -82,8 +78,6 @@ pub(crate) struct Record {
 #[derive(Default)]
 pub(crate) struct Results {
     pub(crate) records: Vec<Record>,
-    /// Medians by scene, size and technique.
-    pub(crate) timed: Vec<(&'static str, u32, &'static str, Times)>,
     /// Pictures of the visibility of the light, by scene/case, size and technique.
     pub(crate) masks: HashMap<(String, u32, &'static str), Vec<u8>>,
     /// Truths that no earlier run had left.
@@ -108,23 +102,22 @@ pub(crate) fn called(assignment: &Assignment, case: &Case) -> String {
     format!("{}/{}", assignment.scene, case.name)
 }
 
-/// Photographs the thesis's scenes: the main table, and the ablation at its one size.
+/// Photographs the thesis's scenes: the main table, and with it, at its one size, the ablation.
 pub(crate) fn built_in(backend: &mut Backend, programme: &Programme, results: &mut Results) -> Result<(), String> {
     let techniques = adapted(backend, main_techniques());
     let known = |step: &Step| techniques.iter().any(|(name, _)| *name == step.name);
-    let further: Vec<Named> =
-        steps().into_iter().filter(|step| !known(step)).map(|step| (step.name, step.remix)).collect();
-    let further = adapted(backend, further);
+    let further = steps().into_iter().filter(|step| !known(step)).map(|step| (step.name, step.remix)).collect();
+    let all: Vec<Named> = techniques.iter().copied().chain(adapted(backend, further)).collect();
     for assignment in programme.built_in()? {
         for case in &assignment.cases {
+            let shown = SHOWN.contains(&(assignment.scene.as_str(), case.name.as_str()));
             let mut scenery = Scenery::new(backend, &assignment, case, false, results)?;
             for &size in programme.sizes() {
-                let repetitions = if size == STEP_SIDE { programme.repetitions() } else { 1 };
-                let how = How { size, repetitions, closely: size == programme.sizes()[0] };
-                scenery.photograph(&techniques, how, results)?;
+                let these = if size == STEP_SIDE { &all } else { &techniques };
+                let how = How { size, turns: programme.turns(shown, size), closely: size == programme.sizes()[0] };
+                scenery.photograph(these, how, results)?;
             }
-            let how = How { size: STEP_SIDE, repetitions: programme.repetitions(), closely: false };
-            scenery.photograph(&further, how, results)?;
+            scenery.photograph(&wide(&techniques), How::untimed(programme.wide_size()), results)?;
         }
     }
     Ok(())
@@ -132,13 +125,14 @@ pub(crate) fn built_in(backend: &mut Backend, programme: &Programme, results: &m
 
 /// Photographs the shared cases.
 pub(crate) fn shared(backend: &mut Backend, programme: &Programme, results: &mut Results) -> Result<(), String> {
-    let techniques = adapted(backend, six());
+    let techniques = adapted(backend, shared_techniques());
     for assignment in programme.shared()? {
         for case in &assignment.cases {
             let mut scenery = Scenery::new(backend, &assignment, case, true, results)?;
             for &size in programme.sizes() {
-                scenery.photograph(&techniques, How { size, repetitions: 1, closely: false }, results)?;
+                scenery.photograph(&techniques, How::untimed(size), results)?;
             }
+            scenery.photograph(&wide(&techniques), How::untimed(programme.wide_size()), results)?;
         }
     }
     Ok(())
@@ -149,10 +143,16 @@ pub(crate) fn shared(backend: &mut Backend, programme: &Programme, results: &mut
 struct How {
     /// Side of maps, texels.
     size: u32,
-    /// Turns of each pass; medians are kept.
-    repetitions: u32,
+    /// Timed turns; 0 draws once, untimed.
+    turns: u32,
     /// Whether artefacts are measured.
     closely: bool,
+}
+
+impl How {
+    fn untimed(size: u32) -> Self {
+        Self { size, turns: 0, closely: false }
+    }
 }
 
 /// A case with its truth, ready to be photographed.
@@ -184,34 +184,51 @@ impl<'a> Scenery<'a> {
 
     /// Adds a record of each technique, and keeps the masks that may be shown.
     fn photograph(&mut self, all: &[Named], how: How, results: &mut Results) -> Result<(), String> {
-        let size = how.size;
-        for (name, remix) in all {
-            let (record, mask) = self.shoot(name, remix, how)?;
+        let shots = self.shoot(all, how)?;
+        for ((name, _), (shot, times)) in all.iter().zip(shots) {
+            let record = self.record(name, &shot, times, how)?;
             println!(
-                "{}/{} {size} {name}: excess {:.3} %, wrong {:.3} %, {:.0} ms",
+                "{}/{} {} {name}: excess {:.3} %, wrong {:.3} %{}",
                 record.scene,
                 record.case,
+                how.size,
                 100.0 * record.excess,
                 100.0 * record.wrong,
-                record.times.total()
+                times.map_or_else(String::new, |times| format!(", {:.1} ± {:.1} ms", times.total, times.spread))
             );
             if !self.shared && main_techniques().iter().any(|(known, _)| known == name) {
-                results.masks.insert((format!("{}/{}", self.scene, self.case), size, name), mask);
+                results.masks.insert((format!("{}/{}", self.scene, self.case), how.size, name), shot.mask);
             }
             results.records.push(record);
         }
         Ok(())
     }
 
-    fn shoot(&mut self, name: &'static str, remix: &Remix, how: How) -> Result<(Record, Vec<u8>), String> {
-        let shot = self.studio.shoot(remix, how.size, how.repetitions).map_err(|error| error.to_string())?;
+    /// Draws all of them: in turns, so that other work on the machine meets all alike, or once where no time is asked.
+    fn shoot(&mut self, all: &[Named], how: How) -> Result<Vec<(Shot, Option<Times>)>, String> {
+        let drawn: Vec<&dyn ShadowTechnique> = all.iter().map(|(_, remix)| remix as &dyn ShadowTechnique).collect();
+        if how.turns == 0 {
+            let shots = drawn.iter().map(|technique| Ok((self.studio.shoot(*technique, how.size, 1)?, None)));
+            return shots.collect::<Result<_, RunError>>().map_err(|error| error.to_string());
+        }
+        let timed = self.studio.shoot_in_turns(&drawn, how.size, how.turns).into_iter();
+        let taken = timed.map(|timed| {
+            let timed = timed.map_err(|error| error.to_string())?;
+            let times = Times::of(&timed);
+            Ok((timed.shot, Some(times)))
+        });
+        taken.collect()
+    }
+
+    /// What a picture is worth.
+    fn record(&self, name: &'static str, shot: &Shot, times: Option<Times>, how: How) -> Result<Record, String> {
         let scores = shot.scores(&self.truth).map_err(|error| error.to_string())?;
         let artefacts = how.closely.then(|| {
             let footprints = Measured::new(&self.visible, &shot.frame, &self.setting, &self.truth.valid);
             let Light::Directional { travel } = self.setting.light else { return Artefacts::default() };
             Artefacts::of(&shot.mask, &self.truth, travel, footprints.perspective)
         });
-        let record = Record {
+        Ok(Record {
             shared: self.shared,
             scene: self.scene.clone(),
             case: self.case.clone(),
@@ -224,40 +241,12 @@ impl<'a> Scenery<'a> {
             floor: [scores.floor_rmse, scores.floor_mae],
             wrong: scores.wrong_center,
             thirds: scores.thirds.map(|third| third.wrong_center),
-            edge_px: scores.edge_center_px.unwrap_or(f64::NAN),
+            edge_px: scores.edge_center_px,
             leak: scores.leak_interior,
             acne: scores.false_interior,
-            times: Times::of(&shot),
+            times,
             bytes: shot.bytes,
             artefacts,
-        };
-        Ok((record, shot.mask))
+        })
     }
-}
-
-/// Times the six where the thesis has its pictures, turn by turn, so that other work on the machine meets all of them.
-pub(crate) fn time(backend: &mut Backend, programme: &Programme, results: &mut Results) -> Result<(), String> {
-    let techniques = adapted(backend, six());
-    for (scene, viewpoint) in SHOWN {
-        for assignment in programme.built_in()?.iter().filter(|assignment| assignment.scene == scene) {
-            let Some(case) = assignment.cases.iter().find(|case| case.name == viewpoint) else { continue };
-            let mut studio =
-                Studio::new(backend, &assignment.subject, Setting::of(case)).map_err(|error| error.to_string())?;
-            for &size in programme.sizes() {
-                let mut times = vec![Vec::new(); techniques.len()];
-                for _ in 0..programme.turns() {
-                    for ((_, remix), times) in techniques.iter().zip(&mut times) {
-                        let shot =
-                            studio.shoot(remix, size, programme.repetitions()).map_err(|error| error.to_string())?;
-                        times.push(Times::of(&shot));
-                    }
-                }
-                for ((name, _), times) in techniques.iter().zip(&times) {
-                    results.timed.push((scene, size, name, Times::median(times)));
-                }
-                println!("{scene}/{viewpoint} {size}: timed");
-            }
-        }
-    }
-    Ok(())
 }

@@ -17,6 +17,9 @@ const GROUND: Vec3 = Vec3::new(0.55, 0.60, 0.42);
 const WALL: Vec3 = Vec3::new(0.72, 0.66, 0.58);
 const SKY: Vec3 = Vec3::new(0.60, 0.72, 0.88);
 
+/// Exponent from bytes to light: sRGB's curve is within 0.04 of it.
+const GAMMA: f32 = 2.2;
+
 /// Rows of pixels between pictures, and of the strip that a name stands in.
 const GAP: usize = 4;
 const STRIP: usize = 22;
@@ -82,20 +85,24 @@ impl Picture {
         Self { width, height, pixels: (0..width * height).map(shade).collect() }
     }
 
-    /// Where light leaks (red) and where shadow is false (blue).
+    /// Where light leaks (orange-red) and where shadow is false (blue).
     pub(crate) fn errors(truth: &Truth, mask: &[u8]) -> Result<Self, String> {
         let bytes = heat_map(&mask_from_bytes(mask), truth).map_err(|error| error.to_string())?;
         let pixels = bytes.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         Ok(Self { width: truth.width as usize, height: truth.height as usize, pixels })
     }
 
-    /// Half as wide and high: means of four.
+    /// Half as wide and high: means of the light of four.
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
+        let light: [f32; 256] = std::array::from_fn(|byte| (byte as f32 / f32::from(u8::MAX)).powf(GAMMA));
         let mean = |index: usize| {
             let at = 2 * (index / width) * self.width + 2 * (index % width);
             let four = [0, 1, self.width, self.width + 1].map(|step| self.pixels[at + step]);
-            [0, 1, 2].map(|channel| (four.iter().map(|pixel| u32::from(pixel[channel])).sum::<u32>() / 4) as u8)
+            srgb(
+                four.map(|pixel| Vec3::from(pixel.map(|byte| light[usize::from(byte)]))).into_iter().sum::<Vec3>()
+                    / 4.0,
+            )
         };
         Self { width, height, pixels: (0..width * height).map(mean).collect() }
     }
@@ -105,6 +112,44 @@ impl Picture {
         let rows =
             (top..top + height).flat_map(|row| &self.pixels[row * self.width + left..row * self.width + left + width]);
         Self { width, height, pixels: rows.copied().collect() }
+    }
+
+    /// In other colours, where there are any: each pixel stays as bright as it was.
+    pub(crate) fn tinted(&self, colour: impl Fn(usize) -> Option<[u8; 3]>) -> Self {
+        let tint = |(pixel, old): (usize, &[u8; 3])| {
+            let grey = f32::from(old[0].max(old[1]).max(old[2])) / f32::from(u8::MAX);
+            colour(pixel).map_or(*old, |new| new.map(|channel| (f32::from(channel) * grey).round() as u8))
+        };
+        Self { pixels: self.pixels.iter().enumerate().map(tint).collect(), ..*self }
+    }
+
+    /// The pixel at a place, if it is in the picture.
+    pub(crate) fn pixel_at(&self, x: f64, y: f64) -> Option<usize> {
+        let inside = (0.0..self.width as f64).contains(&x) && (0.0..self.height as f64).contains(&y);
+        inside.then(|| y as usize * self.width + x as usize)
+    }
+
+    /// Draws a line as a row of squares, `pen` pixels to all sides; what is outside of the picture is left out.
+    pub(crate) fn draw_line(&mut self, from: [f64; 2], to: [f64; 2], pen: f64, colour: [u8; 3]) {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let steps = along[0].abs().max(along[1].abs()).ceil().max(1.0);
+        let offsets = [-pen, 0.0, pen];
+        for step in 0..=steps as usize {
+            let share = step as f64 / steps;
+            for (x, y) in offsets.iter().flat_map(|x| offsets.iter().map(move |y| (x, y))) {
+                if let Some(pixel) = self.pixel_at(from[0] + share * along[0] + x, from[1] + share * along[1] + y) {
+                    self.pixels[pixel] = colour;
+                }
+            }
+        }
+    }
+
+    /// One above the other, from the left.
+    pub(crate) fn above(&self, other: &Self) -> Self {
+        let mut whole = Self::blank(self.width.max(other.width), self.height + other.height);
+        whole.put(self, [0, 0]);
+        whole.put(other, [0, self.height]);
+        whole
     }
 
     fn blank(width: usize, height: usize) -> Self {
@@ -157,7 +202,7 @@ pub(crate) fn montage(pictures: &[(String, Picture)], columns: usize) -> Picture
     whole
 }
 
-/// Linear to 8-bit sRGB, near enough for a picture: gamma 2.2.
+/// Linear to 8-bit sRGB, near enough for a picture.
 fn srgb(colour: Vec3) -> [u8; 3] {
-    (colour.clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2) * 255.0).round().as_u8vec3().to_array()
+    (colour.clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / GAMMA) * 255.0).round().as_u8vec3().to_array()
 }

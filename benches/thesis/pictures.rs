@@ -4,9 +4,11 @@ use std::path::Path;
 
 use antumbra::lab::case::{Case, CaseLight};
 use antumbra::lab::files::write_whole;
+use antumbra::lab::subject::Subject;
 use antumbra::lab::truth::Truth;
 use glam::DVec3;
 
+use crate::maps::MapSight;
 use crate::measure::{Record, Results, called};
 use crate::montage::{Picture, montage};
 use crate::programme::{PLUS, PSSM, Programme, SHOWN, SIX, SMRA, SSM, TSM, UNFILTERED, VSM};
@@ -16,6 +18,10 @@ const CROP: [usize; 2] = [400, 300];
 
 /// By how much that part is moved while the one with the most to see is sought, pixels.
 const STRIDE: usize = 50;
+
+/// What the colours of errors mean.
+pub(crate) const ERROR_COLOURS: &str = "orange-red where light leaks, blue where shadow is false, else light grey where the truth is lit, dark grey where it is in shadow, black where \
+     nothing is judged (sky, and what is turned away from the light)";
 
 /// Where the pictures lie beside the page.
 pub(crate) const FOLDER: &str = "thesis";
@@ -53,6 +59,7 @@ pub(crate) fn write(programme: &Programme, results: &mut Results, shown: &[&Show
                 let name = &assignment.scene;
                 let scene = Sight { results, truth: &truth, case: called(assignment, case), travel: travel(case) };
                 save(&format!("{name}-techniques.jpg"), &scene.techniques(programme.sizes()[0])?)?;
+                save(&format!("{name}-maps.jpg"), &scene.maps(&assignment.subject, case, programme.sizes()[0])?)?;
                 save(&format!("{name}-sizes.jpg"), &scene.sizes(programme.sizes())?)?;
             }
             for shown in shown.iter().filter(|shown| *shown.scene == assignment.scene && shown.case == case.name) {
@@ -93,7 +100,18 @@ impl Sight<'_> {
         self.results.masks.get(&key).map(Vec::as_slice).ok_or_else(|| format!("{}: no picture of {name}", self.case))
     }
 
-    /// Figures 47 to 56.
+    /// Figures 49, 50 and 52.
+    fn maps(&self, subject: &Subject, case: &Case, size: u32) -> Result<Picture, String> {
+        let sight = MapSight::new(subject, case);
+        let mut served = vec![("truth".to_owned(), Picture::shaded(self.truth, Some(&bytes(self.truth)), self.travel))];
+        for name in [PSSM, PLUS] {
+            served.push((format!("{name} maps"), sight.served(name, size, &self.shaded(name, size)?)?));
+        }
+        let served: Vec<_> = served.into_iter().map(|(name, picture)| (name, picture.halved())).collect();
+        Ok(montage(&sight.maps()?, 4).above(&montage(&served, 3)))
+    }
+
+    /// Figures 47, 48, 51 and 53 to 56.
     fn techniques(&self, size: u32) -> Result<Picture, String> {
         let bare = Picture::shaded(self.truth, None, self.travel).halved();
         let mut pictures = vec![("no shadows".to_owned(), bare)];

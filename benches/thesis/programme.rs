@@ -26,6 +26,8 @@ pub(crate) const PLUS: &str = "SMRA plus";
 pub(crate) const UNFILTERED: &str = "PSSM + TSM";
 pub(crate) const GUARDED: &str = "TSM, guarded";
 pub(crate) const FOCUSED: &str = "VSM, focused";
+pub(crate) const PSSM_FOUR: &str = "PSSM, 4 maps";
+pub(crate) const SMRA_FOUR: &str = "SMRA, 4 maps";
 
 /// What the thesis mixes.
 pub(crate) const CONTRIBUTORS: [&str; 4] = [SSM, TSM, PSSM, VSM];
@@ -33,8 +35,17 @@ pub(crate) const CONTRIBUTORS: [&str; 4] = [SSM, TSM, PSSM, VSM];
 /// What every comparison has.
 pub(crate) const SIX: [&str; 6] = [SSM, TSM, PSSM, VSM, SMRA, PLUS];
 
-/// What SMRA plus has to beat: the thesis's five, and two of them in the better form that this crate has.
-pub(crate) const RIVALS: [&str; 7] = [SSM, TSM, GUARDED, PSSM, VSM, FOCUSED, SMRA];
+/// A technique, and how many times as wide its maps are as those of SMRA plus.
+pub(crate) type Rival = (&'static str, u32);
+
+/// What SMRA plus has to beat with maps of the same side: the thesis's five, and two of them in the better form that
+/// this crate has. It has four maps, parallel splits three, the others one.
+pub(crate) const SAME_SIDE: [Rival; 7] =
+    [(SSM, 1), (TSM, 1), (GUARDED, 1), (PSSM, 1), (VSM, 1), (FOCUSED, 1), (SMRA, 1)];
+
+/// And at equal texels: one map of twice the side, or four maps.
+pub(crate) const EQUAL_TEXELS: [Rival; 7] =
+    [(SSM, 2), (TSM, 2), (GUARDED, 2), (VSM, 2), (FOCUSED, 2), (PSSM_FOUR, 1), (SMRA_FOUR, 1)];
 
 /// A technique by the name it has on the page.
 pub(crate) type Named = (&'static str, Remix);
@@ -46,17 +57,36 @@ pub(crate) fn main_techniques() -> Vec<Named> {
         (TSM, Remix { guard: false, ..techniques::tsm() }),
         (GUARDED, techniques::tsm()),
         (PSSM, techniques::pssm()),
+        (PSSM_FOUR, in_four_maps(techniques::pssm())),
         (VSM, Remix { warp: Warp::Uniform, ..techniques::vsm() }),
         (FOCUSED, techniques::vsm()),
         (UNFILTERED, Remix { encoding: Encoding::default(), grazing: Grazing::Off, ..techniques::smra() }),
         (SMRA, techniques::smra()),
+        (SMRA_FOUR, in_four_maps(techniques::smra())),
         (PLUS, techniques::smra_plus()),
     ]
+}
+
+/// The same splits with as many maps as SMRA plus has.
+fn in_four_maps(remix: Remix) -> Remix {
+    let Split::Depth(splits) = remix.split else { return remix };
+    Remix { split: Split::Depth(DepthSplits { maps: 4, ..splits }), ..remix }
 }
 
 /// The six alone.
 pub(crate) fn six() -> Vec<Named> {
     main_techniques().into_iter().filter(|(name, _)| SIX.contains(name)).collect()
+}
+
+/// Those that take part in the shared cases: the six, and what they are compared with at equal texels.
+pub(crate) fn shared_techniques() -> Vec<Named> {
+    let there = |name: &str| SIX.contains(&name) || [PSSM_FOUR, SMRA_FOUR].contains(&name);
+    main_techniques().into_iter().filter(|(name, _)| there(name)).collect()
+}
+
+/// Those of them that are drawn with maps of twice the largest side as well.
+pub(crate) fn wide(techniques: &[Named]) -> Vec<Named> {
+    techniques.iter().copied().filter(|(name, _)| EQUAL_TEXELS.contains(&(*name, 2))).collect()
 }
 
 /// A step of the ablation: one change to the step before it.
@@ -71,12 +101,11 @@ pub(crate) struct Step {
 /// One change at a time, from the standard map to SMRA, and from parallel splits to SMRA plus.
 pub(crate) fn steps() -> Vec<Step> {
     let step = |name, from, change, remix| Step { name, change, from, remix };
-    let splits = |scheme, select, enough| {
-        let splits = DepthSplits { maps: 4, scheme, select, enough, ..DepthSplits::DEFAULT };
+    let splits = |select| {
+        let splits = DepthSplits { maps: 4, scheme: Scheme::EqualError, select, ..DepthSplits::DEFAULT };
         Remix { split: Split::Depth(splits), ..techniques::pssm() }
     };
-    let (practical, enough) = (Scheme::Practical { lambda: 0.5, offset: 0.0 }, DepthSplits::DEFAULT.enough);
-    let finest = splits(Scheme::EqualError, Select::Finest, enough);
+    let finest = splits(Select::Finest);
     let filtered = |encoding| Remix { encoding, ..finest };
     let unfiltered = Remix { encoding: Encoding::default(), grazing: Grazing::Off, ..techniques::smra() };
     vec![
@@ -91,13 +120,8 @@ pub(crate) fn steps() -> Vec<Step> {
             Remix { grazing: Grazing::Off, ..techniques::smra() },
         ),
         step(SMRA, "+ variance", "½ where the light grazes", techniques::smra()),
-        step("4 maps", PSSM, "4 maps, not 3", splits(practical, Select::Depth, 0.0)),
-        step(
-            "equal error",
-            "4 maps",
-            "planes of equal predicted error",
-            splits(Scheme::EqualError, Select::Depth, enough),
-        ),
+        step(PSSM_FOUR, PSSM, "4 maps, not 3", in_four_maps(techniques::pssm())),
+        step("equal error", PSSM_FOUR, "planes of equal predicted error", splits(Select::Depth)),
         step(FINEST, "equal error", "the finest map that holds a receiver", finest),
         step("PCF 3×3", FINEST, "filter: 4 samples over 3×3 texels", filtered(Encoding::Depth(Pcf::Box3x3))),
         step("variance", FINEST, "filter: variance", filtered(techniques::vsm().encoding)),
@@ -127,6 +151,14 @@ pub(crate) fn steps() -> Vec<Step> {
 /// The step that filters are tried on.
 pub(crate) const FINEST: &str = "finest";
 
+/// Turns that are timed: where the thesis has its pictures, there from a side of maps on that takes long, and of the
+/// ablation in other views. Fewer leave quartiles to chance, more take long.
+const TURNS: u32 = 5;
+const TURNS_LARGE: u32 = 3;
+const TURNS_STEP: u32 = 3;
+const TURNS_QUICK: u32 = 2;
+const LARGE: u32 = 2048;
+
 /// Which of it all is photographed.
 pub(crate) struct Programme {
     pub(crate) quick: bool,
@@ -138,14 +170,21 @@ impl Programme {
         if self.quick { &[512, 1024] } else { &[512, 1024, 2048] }
     }
 
-    /// Turns that every technique gets where it is timed; medians are reported.
-    pub(crate) fn turns(&self) -> usize {
-        if self.quick { 1 } else { 3 }
+    /// Side of the wide maps, which have the texels of four of the largest.
+    pub(crate) fn wide_size(&self) -> u32 {
+        2 * self.sizes().last().copied().unwrap_or(STEP_SIDE)
     }
 
-    /// How often a pass is drawn in its turn; medians are kept. The first one touches fresh memory.
-    pub(crate) fn repetitions(&self) -> u32 {
-        if self.quick { 1 } else { 3 }
+    /// Timed turns of a picture, of which medians are reported; 0 where no time is. Where the thesis has its pictures
+    /// they are in its Table 2, at one size in the ablation.
+    pub(crate) fn turns(&self, shown: bool, size: u32) -> u32 {
+        let turns = match (shown, size) {
+            (true, ..LARGE) => TURNS,
+            (true, _) => TURNS_LARGE,
+            (false, STEP_SIDE) => TURNS_STEP,
+            (false, _) => 0,
+        };
+        if self.quick { turns.min(TURNS_QUICK) } else { turns }
     }
 
     /// The command line that does this again.

@@ -6,6 +6,7 @@ pub mod cli;
 pub mod comparison;
 pub mod cpu;
 pub mod depth_error;
+pub mod entering;
 pub mod experiment;
 pub mod eye_blur;
 pub mod files;
