@@ -118,6 +118,14 @@ pub enum Why {
         /// Most texels over a pixel.
         texels: f64,
     },
+    /// Sides that are odd are not halved: a map of 1000 texels has three levels beyond the first, one of 1024 all. What
+    /// sees more texels in a pixel shows one in so many.
+    SidesAreOdd {
+        /// Last level that pixels ask for.
+        wanted: u32,
+        /// Last level there is.
+        halved: u32,
+    },
     /// The format of the moments is too coarse for thin shadows: casters nearer to their receivers than this leak.
     FormatLoses {
         /// Standard deviation of depths that the format makes, share of the map's depth range.
@@ -214,6 +222,9 @@ impl fmt::Display for Why {
             Self::TexelsEnough { side } => write!(f, "a side of {side} is as fine in the picture as the worst map"),
             Self::TexelsElsewhere { side } => write!(f, "a side of {side}: the rest is worth more in other maps"),
             Self::TexelsAreLarger { texels } => write!(f, "no pixel sees more than {texels:.2} texels"),
+            Self::SidesAreOdd { wanted, halved } => {
+                write!(f, "level {halved} instead of {wanted}: sides that are odd are not halved")
+            }
             Self::FormatLoses { depth } => {
                 write!(f, "the format loses {:.1} % of the depth range: near contacts leak", 100.0 * depth)
             }

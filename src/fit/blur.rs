@@ -137,21 +137,26 @@ impl Fitter<'_> {
         } else {
             DVec4::W
         } / pixels;
-        let levels = prefilter.moments.last_level(self.tile.of).min(self.whole_levels());
+        let (last, halved) = (prefilter.moments.last_level(self.tile.of), self.whole_levels());
         let texels = placed.most_texels(pixel);
-        let read = texels.log2().ceil().clamp(0.0, f64::from(levels)) as u32;
+        let wanted = texels.log2().ceil().clamp(0.0, f64::from(last)) as u32;
+        let read = wanted.min(halved);
         if read > 0 {
             uniforms.pixel_from_render = pixel.as_vec4().to_array();
-        } else if levels > 0 {
+        }
+        if wanted > halved {
+            frame.leave_out(Part::Levels(self.index), Why::SidesAreOdd { wanted, halved });
+        } else if wanted == 0 && last > 0 {
             frame.leave_out(Part::Levels(self.index), Why::TexelsAreLarger { texels });
         }
         uniforms.moments = [prefilter.dark, read as f32, self.lifted(prefilter) as f32, uniforms.moments[3]];
     }
 
-    /// Last level in which the tile is whole texels: beyond it they are shared with other maps.
+    /// Last level in which the tile is whole texels: beyond it they are shared with other maps, or where a level of an
+    /// odd side was halved no longer lie where they are looked up.
     fn whole_levels(&self) -> u32 {
         let Tile { corner, side, of, .. } = self.tile;
-        if side == of { u32::MAX } else { (corner.x | corner.y | side | of).trailing_zeros() }
+        (corner.x | corner.y | side | of).trailing_zeros()
     }
 }
 

@@ -6,7 +6,7 @@ use antumbra::gpu::{ShadowMaps, wgpu};
 use antumbra::lab::cpu::{self, Visible};
 use antumbra::lab::gpu::{Renderer, read_moments};
 use antumbra::lab::subject::{Setting, Subject};
-use antumbra::{DepthRange, Light, MomentFormat, MomentKind, Moments, Radius, ShadowFrame};
+use antumbra::{DepthRange, Light, MomentFormat, MomentKind, Moments, Radius, ShadowFrame, Why};
 use glam::{DVec3, UVec2};
 
 use crate::stage::{SIZE, Stage, encoding, filtered, fit, fit_to, kinds, tiled};
@@ -189,13 +189,13 @@ fn levels_end_where_tiles_do() {
             let last = uniforms.moments[1] as u32;
             assert_eq!(uniforms.moments[1], last as f32);
             let is_whole = |level: u32| [left, top, tile, of].iter().all(|length| length % (1 << level) == 0);
-            if tile < of {
-                assert!(is_whole(last), "{last}: {:?}", view.blur.tile);
-                assert!(last == moments.last_level(side) || !is_whole(last + 1), "{last}: {:?}", view.blur.tile);
-                ended += usize::from(last < moments.last_level(side));
-            } else {
-                assert_eq!(last, moments.last_level(side));
-            }
+            // Whole maps as well: half of an odd side is not where it is looked up.
+            assert!(is_whole(last), "{last}: {:?}", view.blur.tile);
+            assert!(last == moments.last_level(side) || !is_whole(last + 1), "{last}: {:?}", view.blur.tile);
+            ended += usize::from(last < moments.last_level(side));
+            let said =
+                frame.left_out.iter().any(|cut| matches!(cut.why, Why::SidesAreOdd { halved, .. } if halved == last));
+            assert_eq!(said, last < moments.last_level(side), "{:?}", view.blur.tile);
         }
     }
     assert!(ended > 4, "{ended}");

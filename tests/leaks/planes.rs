@@ -5,7 +5,7 @@ use antumbra::{
     Aabb, Camera, Encoding, FitInput, Light, MapBudget, MomentFormat, MomentKind, Moments, Prefilter, Radius, Remix,
     Scene, ShadowTechnique, techniques,
 };
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, UVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::drawn::Drawn;
@@ -213,4 +213,32 @@ fn planes_in_small_levels_do_not_shade_themselves() {
         }
     }
     assert!(broken.is_empty(), "{broken:#?}");
+}
+
+/// Sides whose halves are odd at some level: 125, 375, 1023, and one that is halved to the end.
+const SIDES: [u32; 4] = [1000, 1500, 1023, 1024];
+
+/// Half of an odd side is not where it is looked up: levels end there, and a plane that nothing shades stays lit in a
+/// picture of few pixels. (At level 4 of 1000 texels it was 38 % lit.)
+#[test]
+fn planes_in_levels_of_odd_sides_do_not_shade_themselves() {
+    for side in SIDES {
+        let prefilter = Prefilter::of(Moments::new(MomentKind::Variance, MomentFormat::Float32).read(false, true));
+        let remix = Remix { encoding: Encoding::Moments(prefilter), ..techniques::ssm() };
+        let mut input = FitInput { map: MapBudget::one(side), ..Plane::input() };
+        input.camera.viewport = UVec2::splat(12);
+        let plane = Plane::new(60.0, 45.0);
+        let drawn = Drawn::new(&plane.model, &input, &remix);
+        let levels = drawn.frame.uniforms.views[0].moments[1];
+        let expected = side.trailing_zeros().min(6);
+        assert!(levels <= expected as f32, "{side}: level {levels} of {expected}");
+        assert!(side != 1024 || levels > 4.0, "the picture asks for {levels} levels");
+        let place = |index: u32| (f64::from(index) / f64::from(POINTS - 1) * 2.0 - 1.0) * 0.4 * HALF;
+        let points = (0..POINTS * POINTS).map(|index| DVec2::new(place(index % POINTS), place(index / POINTS)));
+        let points: Vec<DVec3> = points.map(|at| plane.at(at)).filter(|at| at.y.abs() <= 0.5 * HALF).collect();
+        let lit = |at: &DVec3| f64::from(drawn.lit(at.as_vec3(), plane.normal.as_vec3()));
+        let least = points.iter().map(lit).fold(1.0, f64::min);
+        println!("side {side}: level {levels}, least light {least:.4} of {} points", points.len());
+        assert!(least >= 1.0 - MOST, "{side}: {least}");
+    }
 }
