@@ -210,9 +210,11 @@ const MOST_REMAINS: f64 = 3.0;
 /// Guarded warps and least-error follow the camera and the light without a jump, through the direction of light too.
 #[test]
 fn warped_maps_are_continuous() {
-    // Splits join and part as the picture needs them; a map's own course is what is promised.
-    for (name, technique) in techniques::NAMED.iter().filter(|(_, technique)| technique().split == Split::One) {
-        let found = findings(&technique());
+    // A map's own course is what is promised: there is one map here, and splits join and part as the picture needs them.
+    // SMRA is limited, too: as published it jumps, 193 of 986 paths.
+    for (name, technique) in techniques::NAMED {
+        let technique = Remix { guard: true, ..technique() };
+        let found = findings(&technique);
         println!(
             "{name}: {} paths, {} jump, {} uneven, {} not halved",
             found.paths,
@@ -221,7 +223,7 @@ fn warped_maps_are_continuous() {
             found.not_halved
         );
         assert!(found.paths > 900);
-        match technique().warp {
+        match technique.warp {
             // A focused window gives way to the scene's where that is hardly larger: a switch, for maps that can be
             // kept.
             Warp::Focused => assert!(found.jumps.len() <= MOST_SWITCHES, "{name}: {:?}", found.jumps),

@@ -12,7 +12,7 @@ use common::{Inputs, all_finite, caster, direction, in_view, inputs, receiver, s
 use glam::{DVec3, DVec4};
 use proptest::prelude::*;
 
-/// Every remix that there is so far.
+/// Remixes of one map that is not warped; `tests/splits.rs` and `tests/warps.rs` have the others.
 fn remixes() -> impl Strategy<Value = Remix> {
     // Moments whose bleeding is reduced look at objects in pairs.
     let variance = Moments::new(MomentKind::Variance, MomentFormat::Float32);
@@ -23,6 +23,11 @@ fn remixes() -> impl Strategy<Value = Remix> {
         stabilise: if snap { Stabilise::SnapTexels } else { Stabilise::Off },
         ..remix
     })
+}
+
+/// These, and the composites by name.
+fn with_composites() -> impl Strategy<Value = Remix> {
+    prop_oneof![2 => remixes(), 1 => Just(techniques::smra()), 1 => Just(techniques::smra_plus())]
 }
 
 /// Clip coordinates through the narrowed matrix, of the position that a vertex buffer holds (f32, relative to origin).
@@ -85,7 +90,7 @@ proptest! {
     /// Any NaN or infinity, anywhere, is an error or a legal frame: never a panic, never a NaN that comes out.
     #[test]
     fn broken_numbers_never_come_out(
-        inputs in inputs(), remix in remixes(), place in 0..24_usize,
+        inputs in inputs(), remix in with_composites(), place in 0..24_usize,
         value in prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e300, -1e300, 1e-300, 5e-324]),
     ) {
         let mut input = inputs.fit_input();

@@ -25,8 +25,9 @@ One focused map of 1024 texels, a box of so many texels everywhere, no mips, no 
 (n + 1)/2 bilinear comparisons to an axis, which weigh texels exactly as the moments' box and their interpolation do: it is the same
 penumbra without the loss, and *from PCF* is the root mean square distance from its picture (over valid pixels, 0 to 1). *Filter*,
 *receivers* and *total* are milliseconds of the adapter: medians of {turns} turns, in which contenders follow each other forwards and
-backwards in alternation, after one that is not timed; ± half the distance between the quartiles; both are means over cases. *÷ PCF* is
-the total over PCF's, geometric mean. *Excess* is the mean absolute error against the area truth above that of a perfect hard edge, %: wide filters soften what the truth
+backwards in alternation, after one that is not timed; ± half the distance between the quartiles; both are means over cases. Widths are
+drawn one after another: sums are the same work at every width, and what their *filter* differs by between widths is what the machine did
+meanwhile. *÷ PCF* is the total over PCF's, geometric mean. *Excess* is the mean absolute error against the area truth above that of a perfect hard edge, %: wide filters soften what the truth
 has hard, PCF as well. *Leak* and *false*: pixels more than half wrong away from edges, %. Moments err towards light: their *excess* is low
 also because they leak where a wide PCF shades too much. Read *leak* and *from PCF* beside it.
 ";

@@ -93,6 +93,7 @@ static PREDICTED: Tally<3> = Tally::new();
 
 /// A texel's side is predicted at the corners of what is in view, its longest extent measured anywhere: a
 /// parallelogram's is at most √2 of its longest side, and the error W²/ζ of a warped map is least somewhere in between.
+/// Of one map: what several predict, they predict for what each of them is fitted to, not for what it happens to serve.
 #[test]
 fn predicted_extremes_hold() {
     predicted_extremes_hold_over_hostile_frames();
