@@ -11,8 +11,10 @@
 //! - The scene is known by bounds, not by triangles. Bounds are promises.
 //! - This version serves directional light with one map, uniform ([`techniques::ssm`], [`techniques::fsm`]) or warped
 //!   ([`techniques::psm`], [`techniques::tsm`], [`techniques::lispsm`], [`techniques::minimax`],
-//!   [`techniques::least_error`]), or with several, split by depth ([`techniques::pssm`], [`techniques::cascades`]).
-//!   Maps store depths or moments of them ([`techniques::vsm`] to [`techniques::msm`]).
+//!   [`techniques::least_error`]), or with several, split by depth ([`techniques::pssm`], [`techniques::cascades`],
+//!   [`techniques::smra`], [`techniques::smra_plus`]). Maps store depths, compared by filters of texels, of the pixel
+//!   ([`Pcf::Pixel`]) or as wide as penumbras are ([`Encoding::Soft`]), or moments of them ([`techniques::vsm`] to
+//!   [`techniques::msm_hausdorff`]).
 //!
 //! # Not here
 //! A renderer, a scene graph, a device. The core never names a GPU; with feature `wgpu` the module `gpu` brings
@@ -68,6 +70,11 @@
 //! | angles, lengths | radians, world units |
 //! | precision | f64 in, f64 inside, narrowed to f32 once, relative to `origin` |
 #![cfg_attr(docsrs, feature(doc_cfg))]
+
+/// The manual's example is compiled and run with the others.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Manual;
 
 pub mod aliasing;
 mod camera;

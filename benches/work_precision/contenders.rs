@@ -1,7 +1,10 @@
 //! What takes part: every named technique, and every encoding that none of them has.
 
 use antumbra::lab::experiment::Backend;
-use antumbra::{DepthLaw, Encoding, MomentFormat, MomentKind, Moments, Pcf, Prefilter, Remix, SUN_ANGLE, techniques};
+use antumbra::{
+    DepthLaw, Encoding, MomentFormat, MomentKind, Moments, Pcf, Prefilter, Remix, SUN_ANGLE, Stabilise, Warp,
+    techniques,
+};
 
 /// Sides of maps that all are drawn at, texels.
 pub(crate) const SIZES: [u32; 3] = [512, 1024, 2048];
@@ -41,7 +44,12 @@ pub(crate) fn contenders(backend: &Backend) -> Vec<Contender> {
         .into_iter()
         .chain([Pcf::Point, Pcf::Box3x3, Pcf::Box7x7, Pcf::Disc].map(cascades))
         .chain([("cascades pcss".to_owned(), soft), ("cascades depth/w".to_owned(), over_w)]);
-    let all = named.chain(depths).chain(formats(backend));
+    // What it costs that nothing crawls.
+    let still = |name: &str, remix| {
+        (format!("{name} snapped"), Remix { stabilise: Stabilise::SnapTexels, warp: Warp::Focused, ..remix })
+    };
+    let still = [still("fsm", techniques::fsm()), still("smra-plus", techniques::smra_plus())];
+    let all = named.chain(depths).chain(still).chain(formats(backend));
     all.map(|(name, remix)| Contender { name, remix: backend.adapted(&remix) }).collect()
 }
 
