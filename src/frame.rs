@@ -16,9 +16,9 @@ pub const MAX_VIEWS: usize = 8;
 /// Most planes of depth splits: the ends of the range, and one between any two maps.
 pub const MAX_PLANES: usize = MAX_VIEWS + 1;
 
-/// Most lines of [`ShadowFrame::left_out`]: eight a view (receivers, window, border, texels, penumbra or levels,
-/// bleeding, and two of the warp), and six of the whole.
-pub const MAX_LEFT_OUT: usize = 8 * MAX_VIEWS + 6;
+/// Most lines of [`ShadowFrame::left_out`]: nine a view (receivers, window, border, texels, penumbra or levels, blur,
+/// bleeding, and two of the warp), and seven of the whole.
+pub const MAX_LEFT_OUT: usize = 9 * MAX_VIEWS + 7;
 
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;

@@ -423,3 +423,43 @@ fn the_nearest_near_planes_have_splits() {
         assert!(frame == techniques::cascades().fit(&input).unwrap(), "near {near:e}");
     }
 }
+
+/// A world radius of 1024 texels was cut to 32 without a word, and so was one of sums to 127.
+#[test]
+fn blurs_that_are_cut_say_so() {
+    let visible_depth = Some(DepthRange { near: 1.0, far: 10.0 });
+    let told = |radius, format| {
+        let moments = Moments::new(MomentKind::Hamburger, format);
+        let prefilter = Prefilter { radius, ..Prefilter::of(moments) };
+        let remix = Remix { encoding: Encoding::Moments(prefilter), ..techniques::msm() };
+        let scene = Scene { visible_depth, ..Scene::within(room(300.0)) };
+        let frame = remix.fit(&FitInput { map: MapBudget::one(2048), ..input(scene) }).unwrap();
+        let texel = f64::from(frame.views[0].texel.world[0]);
+        let cut = frame.left_out.iter().find(|cut| cut.part == Part::Blur(0));
+        cut.map(|cut| match cut.why {
+            Why::BlurTooWide { radius } => (radius / texel).round(),
+            why => panic!("{why}"),
+        })
+    };
+    let formats = [MomentFormat::Float32, MomentFormat::Summed];
+    let wide = formats.map(|format| told(Radius::World(5.0), format).unwrap());
+    assert!((wide[0] - 32.0).abs() <= 1.0 && (wide[1] - 127.0).abs() <= 2.0, "{wide:?}");
+    assert_eq!(formats.map(|format| told(Radius::World(0.1), format)), [None; 2]);
+    assert_eq!(formats.map(|format| told(Radius::Texels(32.0), format)), [None; 2]);
+}
+
+/// Shadows that were asked to fade and did not, without a word: over one map, a map of the whole scene, or a share of 0.
+#[test]
+fn shadows_that_do_not_fade_say_so() {
+    let told = |maps, warp, fade, blend| {
+        let split = Split::Depth(DepthSplits { maps, fade, blend, ..DepthSplits::DEFAULT });
+        let input = FitInput { map: cascade_map(), ..input(Scene::within(room(300.0))) };
+        let frame = Remix { split, warp, ..Remix::default() }.fit(&input).unwrap();
+        assert!(!frame.views.is_empty());
+        whys(&frame).contains(&(Part::Fade, Why::NothingToFadeOver))
+    };
+    assert!(
+        told(1, Warp::Focused, true, 0.2) && told(4, Warp::Uniform, true, 0.2) && told(4, Warp::Focused, true, 0.0)
+    );
+    assert!(!told(1, Warp::Focused, false, 0.2) && !told(4, Warp::Focused, true, 0.2));
+}

@@ -7,7 +7,7 @@
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
 use crate::encoding::summed::ANTUMBRA_BOX_MOST;
-use crate::error::{FitError, finite};
+use crate::error::{FitError, within};
 use crate::frame::{Pcf, ViewUniforms};
 use crate::texel::{MomentKind, Moments, Texel};
 
@@ -152,22 +152,18 @@ impl Encoding {
 
     /// Checks its numbers.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
-        let within = |field, value: f32, high: f64, legal| {
-            let value = finite(field, f64::from(value))?;
-            if (0.0..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
-        };
         let prefilter = match self {
             Self::Depth(_) => return Ok(()),
-            Self::Soft { angle } => return within("encoding.angle", *angle, WIDEST_LIGHT, "0 to 0.5"),
+            Self::Soft { angle } => return within("encoding.angle", *angle, [0.0, WIDEST_LIGHT], "0 to 0.5"),
             Self::Moments(prefilter) => prefilter,
         };
-        within("encoding.dark", prefilter.dark, MOST_DARK, "0 to 0.9")?;
+        within("encoding.dark", prefilter.dark, [0.0, MOST_DARK], "0 to 0.9")?;
         match prefilter.radius {
             Radius::Texels(radius) => {
                 let legal = if prefilter.moments.is_summed() { "0 to 127" } else { "0 to 32" };
-                within("encoding.radius", radius, f64::from(prefilter.widest()), legal)
+                within("encoding.radius", radius, [0.0, f64::from(prefilter.widest())], legal)
             }
-            Radius::World(radius) => within("encoding.radius", radius, LARGEST_RADIUS, "0 to 1e9"),
+            Radius::World(radius) => within("encoding.radius", radius, [0.0, LARGEST_RADIUS], "0 to 1e9"),
         }
     }
 }
