@@ -52,8 +52,8 @@ pub struct Prefilter {
     /// [sums](crate::MomentFormat::Summed) there are boxes alone, and the report says so.
     pub bell: bool,
     /// Light up to this share is taken for bleeding and removed, 0 (none) to 0.9. Penumbras lose their outer part with
-    /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at once
-    /// when two begin to. An object is taken for one caster there: give what lies above itself, as the leaves of a tree
+    /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at
+    /// once when two begin to. An object is taken for one caster there: give what lies above itself, as the leaves of a tree
     /// do, in parts. Without objects, and with more than 32 of them over a view, overlap is assumed.
     pub dark: f32,
 }
@@ -63,7 +63,9 @@ pub struct Prefilter {
 pub enum Radius {
     /// Texels, 0 to 32, and of [sums](crate::MomentFormat::Summed) 0 to 127: as wide in the picture as texels are.
     Texels(f32),
-    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most as many texels.
+    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most as many texels. What receivers
+    /// are lifted by for four moments and two exponentials is as many texels everywhere: in strong warps too few near
+    /// the eye, where steep ground darkens (`tests/leaks`).
     World(f32),
 }
 
