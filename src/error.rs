@@ -119,6 +119,17 @@ pub(crate) fn coordinate(field: &'static str, value: f64) -> Result<f64, FitErro
     Err(FitError::OutOfRange { field, value, legal: "-1e15 to 1e15" })
 }
 
+/// Nothing for an option that is finite and from `low` to `high`, else the error that names `field`.
+pub(crate) fn within(
+    field: &'static str,
+    value: f32,
+    [low, high]: [f64; 2],
+    legal: &'static str,
+) -> Result<(), FitError> {
+    let value = finite(field, f64::from(value))?;
+    if (low..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

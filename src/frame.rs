@@ -16,9 +16,9 @@ pub const MAX_VIEWS: usize = 8;
 /// Most planes of depth splits: the ends of the range, and one between any two maps.
 pub const MAX_PLANES: usize = MAX_VIEWS + 1;
 
-/// Most lines of [`ShadowFrame::left_out`]: eight a view (receivers, window, border, texels, penumbra or levels,
-/// bleeding, and two of the warp), and six of the whole.
-pub const MAX_LEFT_OUT: usize = 8 * MAX_VIEWS + 6;
+/// Most lines of [`ShadowFrame::left_out`]: nine a view (receivers, window, border, texels, penumbra or levels, blur,
+/// bleeding, and two of the warp), and seven of the whole.
+pub const MAX_LEFT_OUT: usize = 9 * MAX_VIEWS + 7;
 
 /// Most planes of a [`CullVolume`].
 pub const MAX_CULL_PLANES: usize = 8;
@@ -221,11 +221,12 @@ pub struct ViewUniforms {
     pub depth_from_render: [f32; 4],
     /// x, y: how far a plane falls over one texel step in u and in v, along its normal and in world units, for each
     /// unit of `dot(row, normal)` of those rows; 0 with a manual bias that is not slope-scaled. z: square of the depth
-    /// per world unit along the light. w: size of `dot(depth_from_render, normal)` below which a surface grazes the light.
+    /// per world unit along the light. w: size of `dot(depth_from_render, normal)` below which a surface grazes the
+    /// light.
     pub texel: [f32; 4],
-    /// x: texels that are added to the reach of a filter: what rounding loses, or what makes it a slope-scaled bias. y: manual normal offset, world units. z: warped maps: by
-    /// how much of itself a texel outgrows its neighbours in u and in v together, for each unit of w; 0 without
-    /// automatic bias. w: side of a texel, texture coordinates.
+    /// x: texels that are added to the reach of a filter: what rounding loses, or what makes it a slope-scaled bias.
+    /// y: manual normal offset, world units. z: warped maps: by how much of itself a texel outgrows its neighbours in u
+    /// and in v together, for each unit of w; 0 without automatic bias. w: side of a texel, texture coordinates.
     pub bias: [f32; 4],
     /// The part of the layer that is drawn, in texture coordinates: u min, v min, u max, v max. The texels around it
     /// stay cleared, so that lookups beyond the window, which read those, read lit.
@@ -248,7 +249,8 @@ pub struct ViewUniforms {
     /// Filters of the pixel: size of a pixel there across the line of sight, world units.
     pub pixel_from_render: [f32; 4],
     /// Maps of moments: x: light up to this share is taken for bleeding. y: last level of the mip chain. z: how far
-    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it. w: half-width of the
+    /// receivers are lifted for a texel of their level, beyond one of the map, as a share of it, 0 without automatic
+    /// bias. w: half-width of the
     /// blur, world units where it is not negative, else texels, negated; only sums
     /// ([`Summed`](crate::MomentFormat::Summed)) are read as wide. Maps of depths with penumbras ([`Pcf::Pcss`]): x:
     /// radius of the penumbra, world units, for each unit of linear light depth between caster and receiver. y: radius

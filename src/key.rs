@@ -69,7 +69,8 @@ impl MapShape {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Affine, Self::Projective, Self::ProjectiveDepth];
 
-    /// Whether casters write [`ShadowView::depth_from_render`](crate::ShadowView::depth_from_render) as their depth, instead of leaving z to the rasteriser.
+    /// Whether casters write [`ShadowView::depth_from_render`](crate::ShadowView::depth_from_render) as their depth,
+    /// instead of leaving z to the rasteriser.
     #[must_use]
     pub const fn writes_depth(self) -> bool {
         matches!(self, Self::Projective)
@@ -84,9 +85,10 @@ pub enum Pcf {
     /// The four nearest texels, bilinearly weighted by the sampler hardware: one texture sample.
     #[default]
     Hardware2x2,
-    /// Four bilinear samples over the part of the map that the pixel covers: one bilinear sample where texels are larger
-    /// than pixels, the mean of what the pixel shows where they are smaller ([`pixel`](crate::encoding::pixel)). Its taps know
-    /// their own depths, so that it needs the bias and the border of one sample.
+    /// Four bilinear samples over the part of the map that the pixel covers: one bilinear sample where texels are
+    /// larger than pixels, the mean of what the pixel shows where they are smaller
+    /// ([`pixel`](crate::encoding::pixel)). Its taps know their own depths, so that it needs the bias and the border of
+    /// one sample.
     Pixel,
     /// A box three texels wide: 4 texture samples.
     Box3x3,
@@ -111,7 +113,8 @@ impl Pcf {
 
     /// Distance in texels, along an axis of the map, from a point to the farthest texel centre that its filter reads.
     /// Point: ½ (the texel the point lies in); bilinear: 1; an n×n box of bilinear samples: (n + 1)/2; a disc
-    /// of them: its radius and 1. Taps over the pixel that lie beyond the map are not read: those of one bilinear sample.
+    /// of them: its radius and 1. Taps over the pixel that lie beyond the map are not read: those of one bilinear
+    /// sample.
     #[must_use]
     pub const fn reach(self) -> f64 {
         match self {

@@ -134,7 +134,7 @@ impl ShadowTechnique for Remix {
                 }
                 // A map of the whole scene is the same for every slice.
                 (1..split.maps()).for_each(|split| frame.leave_out(Part::Split(split), Why::ServedBy { view: 0 }));
-                Fitter::finish_one(split.selection().0, &mut frame);
+                Fitter::finish_one(split, &mut frame);
             }
         }
         Ok(frame)

@@ -28,6 +28,10 @@ pub enum Part {
     Texels(u8),
     /// Width of the penumbras of a view.
     Penumbra(u8),
+    /// Width of the blur of a view's moments.
+    Blur(u8),
+    /// The fading of shadows at the visible depth ([`DepthSplits::fade`](crate::DepthSplits::fade)).
+    Fade,
     /// Reduction of light bleeding ([`Prefilter::dark`](crate::Prefilter::dark)) in a view.
     Bleeding(u8),
 }
@@ -138,6 +142,13 @@ pub enum Why {
         /// Distance between caster and receiver up to which penumbras are as wide as they should be, world units.
         apart: f64,
     },
+    /// No blur is wider than 32 texels, of sums 127: where texels are smallest it is as wide as this.
+    BlurTooWide {
+        /// Half-width there, world units.
+        radius: f64,
+    },
+    /// Shadows fade over a share of the last of several maps: there is one map for all, or the share is 0.
+    NothingToFadeOver,
     /// No two casters lie above one another as the light sees them, nor as near as what is blurred together
     /// (`scene.objects`, each taken for one caster): no light bleeds, and penumbras keep their outer part.
     NothingOverlaps,
@@ -183,6 +194,8 @@ impl fmt::Display for Part {
             Self::Warp(index) => write!(f, "view {index}, warp"),
             Self::Texels(index) => write!(f, "view {index}, texels"),
             Self::Penumbra(index) => write!(f, "view {index}, penumbra"),
+            Self::Blur(index) => write!(f, "view {index}, blur"),
+            Self::Fade => write!(f, "fade"),
             Self::Bleeding(index) => write!(f, "view {index}, reduction of bleeding"),
         }
     }
@@ -232,6 +245,8 @@ impl fmt::Display for Why {
             Self::PenumbraTooWide { apart } => {
                 write!(f, "no wider than that of casters {apart:.3} from their receivers")
             }
+            Self::BlurTooWide { radius } => write!(f, "no wider than {radius:.4} where texels are smallest"),
+            Self::NothingToFadeOver => write!(f, "one map for all, or no blend: shadows end at an edge, or not at all"),
             Self::NothingOverlaps => write!(f, "no casters lie above one another: no light bleeds"),
             Self::AlreadyStill => write!(f, "fitted to the scene, which does not move with the camera"),
         }

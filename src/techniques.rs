@@ -119,8 +119,8 @@ named! {
     msm_hausdorff "msm-hausdorff" { warp: Warp::Focused, encoding: moments(MomentKind::Hausdorff) }
 
     /// The Shadow Mapping Remix Approach: practical splits, a trapezoid for each, variance, and ½ where
-    /// the light grazes a surface, as the thesis has it. Its trapezoids are not guarded. Errata: depths are the light's (TH-7), planes move between the ends alone (TH-10),
-    /// and Chebyshev's bound is one of light (TH-13).
+    /// the light grazes a surface, as the thesis has it. Its trapezoids are not guarded. Errata: depths are the light's
+    /// (TH-7), planes move between the ends alone (TH-10), and Chebyshev's bound is one of light (TH-13).
     ///
     /// J. Abrantes de Oliveira, *Analysis and proposal of a shadow mapping remix approach*, Universidade do Minho,
     /// chapter 4.

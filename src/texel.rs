@@ -58,8 +58,8 @@ pub enum MomentFormat {
     Unorm8,
     /// 16 bits, 0 to 1, summed over all texels of the view before it in u and in v, in integers of 32 bits that wrap
     /// around: a summed-area table. Every receiver reads the mean over a box of its own width, up to
-    /// [254 texels](crate::Prefilter::widest), from 16 loads; sums of that many are exact whatever the map's size is. Boxes
-    /// alone: no bell, no mips. Every adapter draws it.
+    /// [254 texels](crate::Prefilter::widest), from 16 loads; sums of that many are exact whatever the map's size is.
+    /// Boxes alone: no bell, no mips. Every adapter draws it.
     Summed,
 }
 

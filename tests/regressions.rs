@@ -1,9 +1,9 @@
 //! Bugs, verbatim: the input that showed each, and one sentence.
 
 use antumbra::{
-    Aabb, Bias, Camera, Content, DepthRange, DepthSplits, Encoding, FitError, FitInput, Light, MapBudget, MomentFormat,
-    MomentKind, Moments, Object, Part, Pcf, Prefilter, Radius, Remix, Scene, Scheme, ShadowFrame, ShadowTechnique,
-    Share, Split, Stabilise, Warp, Why, techniques,
+    Aabb, Bias, Camera, Content, DepthRange, Encoding, FitError, FitInput, Light, MapBudget, MomentFormat, MomentKind,
+    Moments, Object, Part, Pcf, Prefilter, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, Stabilise, Why,
+    techniques,
 };
 use glam::{DMat4, DVec3};
 
@@ -295,8 +295,8 @@ fn cameras_of_f32_do_not_panic() {
     }
 }
 
-/// "No limit" as the largest f64, and a frustum without end: corners overflowed, the body collapsed onto the near plane,
-/// and all shadows were lost without a word.
+/// "No limit" as the largest f64, and a frustum without end: corners overflowed, the body collapsed onto the near
+/// plane, and all shadows were lost without a word.
 #[test]
 fn visible_depths_beyond_all_worlds_are_refused() {
     let fit = |far: f64| {
@@ -346,52 +346,6 @@ fn maps_of_another_filter_are_drawn_again() {
     assert_eq!(content(of(Radius::Texels(1.6)), narrow), Content::Redraw);
 }
 
-/// Views that do not exist were said to serve: where nothing casts, there is none.
-#[test]
-fn no_view_serves_where_there_is_none() {
-    let objects = [Object { bounds: room(1.0), casts: false }];
-    let scene = Scene { objects: &objects, ..Scene::within(room(30.0)) };
-    let splits = Split::Depth(DepthSplits::DEFAULT);
-    let whole = Remix { split: splits, warp: Warp::Uniform, ..Remix::default() };
-    let frame = whole.fit(&FitInput { map: cascade_map(), ..input(scene) }).unwrap();
-    assert_eq!(whys(&frame), [(Part::Light, Why::NothingCastsHere)]);
-    // One layer for all maps, the first of which turns out to be one of the whole scene, twice.
-    let mut input = input(Scene { objects: &objects, ..Scene::within(room(3.0)) });
-    input.camera.world_from_view = DMat4::from_translation(DVec3::new(0.0, 0.0, 30.0));
-    input.light = Light::Directional { travel: DVec3::new(0.14, 0.0, -1.0).normalize() };
-    input.map = MapBudget { layers: 1, ..cascade_map() };
-    for (share, stabilise) in [
-        (Share::LeastError, Stabilise::Off),
-        (Share::Equal, Stabilise::Off),
-        (Share::LeastError, Stabilise::SnapTexels),
-    ] {
-        let warp = Warp::Focused;
-        let splits = Split::Depth(DepthSplits { scheme: Scheme::Uniform, enough: 0.0, ..DepthSplits::DEFAULT });
-        let frame = Remix { split: splits, warp, share, stabilise, ..Remix::default() }.fit(&input).unwrap();
-        assert!(frame.views.is_empty() && !frame.left_out.is_empty());
-        let said = whys(&frame);
-        assert!(!said.iter().any(|(_, why)| matches!(why, Why::ServedBy { .. })), "{said:?}");
-        // Nor does anything speak of a view.
-        assert!(said.iter().all(|(part, _)| matches!(part, Part::Light | Part::Split(_))), "{said:?}");
-    }
-}
-
-/// Samples of last year, all of them behind the eye: the error of all maps was predicted to be 0.
-#[test]
-fn stale_samples_do_not_make_maps_perfect() {
-    let fit = |visible_points: &[DVec3], visible_depth| {
-        let scene = Scene { visible_points, visible_depth, ..Scene::within(room(100.0)) };
-        let frame = techniques::cascades().fit(&FitInput { map: cascade_map(), ..input(scene) }).unwrap();
-        assert!(!frame.views.is_empty());
-        frame.predicted.error
-    };
-    let none = fit(&[], None);
-    let stale = fit(&[DVec3::new(0.0, 0.0, 50.0)], None);
-    assert!(none > 0.0 && (stale / none - 1.0).abs() < 0.2, "{stale}, without samples {none}");
-    // Nor do depths without a range.
-    assert!(fit(&[], Some(DepthRange { near: 10.0, far: 10.0 })) > 0.0);
-}
-
 /// A slope given by hand had what the automatic one does for blurs, and for levels, added to it.
 #[test]
 fn manual_bias_of_moments_is_what_it_says() {
@@ -410,16 +364,26 @@ fn manual_bias_of_moments_is_what_it_says() {
     }
 }
 
-/// A near plane so close that f64 has no ratio for it: planes were NaN, so that a frame differed from itself.
+/// A world radius of 1024 texels was cut to 32 without a word, and so was one of sums to 127.
 #[test]
-fn the_nearest_near_planes_have_splits() {
-    for near in [1e-300, f64::MIN_POSITIVE, 5e-324] {
-        let mut input = input(Scene::within(room(2e9)));
-        input.camera = Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, near, 1e9);
-        input.map = cascade_map();
-        let frame = techniques::cascades().fit(&input).unwrap();
-        let again = techniques::cascades().fit(&FitInput { previous: Some(&frame), ..input }).unwrap();
-        assert!(again == techniques::cascades().fit(&FitInput { previous: Some(&frame), ..input }).unwrap());
-        assert!(frame == techniques::cascades().fit(&input).unwrap(), "near {near:e}");
-    }
+fn blurs_that_are_cut_say_so() {
+    let visible_depth = Some(DepthRange { near: 1.0, far: 10.0 });
+    let told = |radius, format| {
+        let moments = Moments::new(MomentKind::Hamburger, format);
+        let prefilter = Prefilter { radius, ..Prefilter::of(moments) };
+        let remix = Remix { encoding: Encoding::Moments(prefilter), ..techniques::msm() };
+        let scene = Scene { visible_depth, ..Scene::within(room(300.0)) };
+        let frame = remix.fit(&FitInput { map: MapBudget::one(2048), ..input(scene) }).unwrap();
+        let texel = f64::from(frame.views[0].texel.world[0]);
+        let cut = frame.left_out.iter().find(|cut| cut.part == Part::Blur(0));
+        cut.map(|cut| match cut.why {
+            Why::BlurTooWide { radius } => (radius / texel).round(),
+            why => panic!("{why}"),
+        })
+    };
+    let formats = [MomentFormat::Float32, MomentFormat::Summed];
+    let wide = formats.map(|format| told(Radius::World(5.0), format).unwrap());
+    assert!((wide[0] - 32.0).abs() <= 1.0 && (wide[1] - 127.0).abs() <= 2.0, "{wide:?}");
+    assert_eq!(formats.map(|format| told(Radius::World(0.1), format)), [None; 2]);
+    assert_eq!(formats.map(|format| told(Radius::Texels(32.0), format)), [None; 2]);
 }

@@ -1,8 +1,8 @@
 //! How much of a visibility the light's angle decides: the Rust twin of `shaders/grazing_*.wgsl`.
 //!
 //! # References
-//! - J. Abrantes de Oliveira, *Analysis and proposal of a shadow mapping remix approach*, Universidade do Minho, section
-//!   4.2.2: between 85° and 90° half of the light arrives, and depths are not compared.
+//! - J. Abrantes de Oliveira, *Analysis and proposal of a shadow mapping remix approach*, Universidade do Minho,
+//!   section 4.2.2: between 85° and 90° half of the light arrives, and depths are not compared.
 //! - `MATH.md` section 7: the same without a leap.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};

@@ -7,7 +7,7 @@
 
 use crate::encoding::blur::ANTUMBRA_BLUR_MOST;
 use crate::encoding::summed::ANTUMBRA_BOX_MOST;
-use crate::error::{FitError, finite};
+use crate::error::{FitError, within};
 use crate::frame::{Pcf, ViewUniforms};
 use crate::texel::{MomentKind, Moments, Texel};
 
@@ -52,8 +52,8 @@ pub struct Prefilter {
     /// [sums](crate::MomentFormat::Summed) there are boxes alone, and the report says so.
     pub bell: bool,
     /// Light up to this share is taken for bleeding and removed, 0 (none) to 0.9. Penumbras lose their outer part with
-    /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at once
-    /// when two begin to. An object is taken for one caster there: give what lies above itself, as the leaves of a tree
+    /// it; so views in which no two of `scene.objects` overlap as the light sees them go without, and get it all at
+    /// once when two begin to. An object is taken for one caster there: give what lies above itself, as the leaves of a tree
     /// do, in parts. Without objects, and with more than 32 of them over a view, overlap is assumed.
     pub dark: f32,
 }
@@ -63,7 +63,9 @@ pub struct Prefilter {
 pub enum Radius {
     /// Texels, 0 to 32, and of [sums](crate::MomentFormat::Summed) 0 to 127: as wide in the picture as texels are.
     Texels(f32),
-    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most as many texels.
+    /// World units, 0 to 1e9: as wide everywhere, whatever warp and split do. At most as many texels. What receivers
+    /// are lifted by for four moments and two exponentials is as many texels everywhere: in strong warps too few near
+    /// the eye, where steep ground darkens (`tests/leaks`).
     World(f32),
 }
 
@@ -152,22 +154,18 @@ impl Encoding {
 
     /// Checks its numbers.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
-        let within = |field, value: f32, high: f64, legal| {
-            let value = finite(field, f64::from(value))?;
-            if (0.0..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
-        };
         let prefilter = match self {
             Self::Depth(_) => return Ok(()),
-            Self::Soft { angle } => return within("encoding.angle", *angle, WIDEST_LIGHT, "0 to 0.5"),
+            Self::Soft { angle } => return within("encoding.angle", *angle, [0.0, WIDEST_LIGHT], "0 to 0.5"),
             Self::Moments(prefilter) => prefilter,
         };
-        within("encoding.dark", prefilter.dark, MOST_DARK, "0 to 0.9")?;
+        within("encoding.dark", prefilter.dark, [0.0, MOST_DARK], "0 to 0.9")?;
         match prefilter.radius {
             Radius::Texels(radius) => {
                 let legal = if prefilter.moments.is_summed() { "0 to 127" } else { "0 to 32" };
-                within("encoding.radius", radius, f64::from(prefilter.widest()), legal)
+                within("encoding.radius", radius, [0.0, f64::from(prefilter.widest())], legal)
             }
-            Radius::World(radius) => within("encoding.radius", radius, LARGEST_RADIUS, "0 to 1e9"),
+            Radius::World(radius) => within("encoding.radius", radius, [0.0, LARGEST_RADIUS], "0 to 1e9"),
         }
     }
 }

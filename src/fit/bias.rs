@@ -32,7 +32,7 @@
 use glam::{DVec2, DVec3, DVec4, Vec4};
 
 use crate::content::Tile;
-use crate::error::{FitError, finite};
+use crate::error::{FitError, within};
 use crate::frame::ViewUniforms;
 use crate::math::space::{Clip, Map, Render};
 use crate::warp::window::Window;
@@ -212,10 +212,7 @@ impl Bias {
             ("bias.slope_texels", slope_texels),
             ("bias.normal_texels", normal_texels),
         ] {
-            let value = finite(field, f64::from(value))?;
-            if !(0.0..=LARGEST_MANUAL).contains(&value) {
-                return Err(FitError::OutOfRange { field, value, legal: "0 to 1e9" });
-            }
+            within(field, value, [0.0, LARGEST_MANUAL], "0 to 1e9")?;
         }
         Ok(())
     }

@@ -98,6 +98,11 @@ impl Fitter<'_> {
             Radius::Texels(radius) => f64::from(radius),
             Radius::World(radius) => f64::from(radius) / texel.min_element(),
         };
+        let most = f64::from(prefilter.widest());
+        if widest > most {
+            let radius = most * texel.min_element();
+            frame.leave_out(Part::Blur(self.index), Why::BlurTooWide { radius });
+        }
         uniforms.bias[0] += (self.lifted(prefilter) * widest.min(f64::from(texels.kernel()))) as f32;
         uniforms.moments[3] = radius;
         self.write_level(prefilter, placed, uniforms, frame);

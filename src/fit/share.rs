@@ -25,7 +25,7 @@ use crate::fit::snap::{self, Stabilise};
 use crate::fit::view::Fitter;
 use crate::frame::MAX_VIEWS;
 use crate::report::Why;
-use crate::scene::DepthRange;
+use crate::scene::{DepthRange, ENOUGH_SAMPLES};
 use crate::split::equal_error::Cost;
 
 /// How many of the texels each map of a depth split gets.
@@ -54,9 +54,6 @@ const MOST_HALVINGS: u32 = 3;
 /// By which factor, less one, a choice may be wrong for a map to keep the side that it had. At 0 sizes flip back and
 /// forth with the camera, and with them edges; at 1 a map keeps a side that is wrong by a halving.
 const HYSTERESIS: f64 = 0.1;
-
-/// Samples in a slice that weigh as much as knowing nothing of it does, as in the warp's predictor.
-const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// Cells in a layer: the smallest tiles.
 const CELLS: u32 = 1 << (2 * MOST_HALVINGS);

@@ -13,6 +13,7 @@ use crate::focus::FocusBody;
 use crate::frame::{Footprint, MAX_VIEWS, Select, ShadowFrame};
 use crate::report::{Part, Why};
 use crate::scene::DepthRange;
+use crate::split::Split;
 use crate::split::depth::DepthSplits;
 
 /// How far beyond its rim the last map is looked up, texture coordinates: as far as receivers are, which read lit
@@ -122,11 +123,14 @@ impl Fitter<'_> {
         domain.map(|depth| depth as f32)
     }
 
-    /// One view serves everything.
-    pub(crate) fn finish_one(select: Select, frame: &mut ShadowFrame) {
+    /// One view serves everything, and gives way to nothing.
+    pub(crate) fn finish_one(split: Split, frame: &mut ShadowFrame) {
+        if matches!(split, Split::Depth(splits) if splits.fade) {
+            frame.leave_out(Part::Fade, Why::NothingToFadeOver);
+        }
         let Some(view) = frame.views.first() else { return };
         frame.predicted = view.texel.pixels;
-        if select == Select::Finest {
+        if split.selection().0 == Select::Finest {
             frame.uniforms.views[0].domain = [0.0, f32::MAX, NO_RIM, 1.0];
         }
     }
@@ -143,6 +147,10 @@ impl Fitter<'_> {
                 views[index].domain[3] = 0.0;
             }
         }
+        if splits.fade && !(splits.blend > 0.0) {
+            frame.leave_out(Part::Fade, Why::NothingToFadeOver);
+        }
+        let views = &mut frame.uniforms.views[..used];
         let [near, far, ..] = views[last].domain;
         match splits.select {
             Select::Depth if splits.fade => {}

@@ -114,9 +114,9 @@ impl Texels {
     }
 }
 
-/// How far behind the last receiver and beyond the rim casters are drawn, as a multiple of what f32 loses of depths along the light: where
-/// maps are found by containment, a receiver just behind a map is still looked up in it, as far as its bias lifts it
-/// for rounding. 1 could cull its caster; more costs nothing to speak of.
+/// How far behind the last receiver and beyond the rim casters are drawn, as a multiple of what f32 loses of depths
+/// along the light: where maps are found by containment, a receiver just behind a map is still looked up in it, as far
+/// as its bias lifts it for rounding. 1 could cull its caster; more costs nothing to speak of.
 const CASTERS_BEHIND: f64 = 16.0;
 
 /// Parts of a texel that f32 may lose of the depth of a whole scene, for maps that are kept. At 1 contacts would leak

@@ -1,4 +1,5 @@
-//! Mathematics without an opinion about shadows: typed spaces, exact convex clipping, smallest rectangles.
+//! Mathematics without an opinion about shadows: typed spaces, exact convex clipping, homographies, smallest
+//! rectangles, searches.
 
 pub(crate) mod convex;
 pub mod homography;

@@ -1,4 +1,4 @@
-//! Searching a strength: one valley, no allocation, a fixed number of steps.
+//! Searching one number: valleys of strengths and of other things, roots, no allocation, few steps at most.
 //!
 //! # References
 //! - Brent, *Algorithms for minimization without derivatives*, 1973, chapter 5: parabolas and golden sections.

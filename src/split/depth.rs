@@ -24,12 +24,9 @@
 
 use arrayvec::ArrayVec;
 
-use crate::error::{FitError, finite};
+use crate::error::{FitError, LARGEST, within};
 pub use crate::frame::MAX_PLANES;
 use crate::frame::{MAX_VIEWS, Select};
-
-/// Largest offset of interior planes, world units: as large as scenes may be.
-const LARGEST_OFFSET: f64 = 1e15;
 
 /// Largest share of a slice over which it may give way to the next one. At 1 every point would be looked up twice.
 const MOST_BLEND: f64 = 0.5;
@@ -49,7 +46,8 @@ pub struct DepthSplits {
     /// Share of a slice, from its far end, over which it gives way to the next one, 0 (a hard edge) to 0.5. Costs a
     /// second lookup there.
     pub blend: f32,
-    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth.
+    /// Whether the last slice gives way to light, over the same share: shadows end softly at the visible depth. Not
+    /// where one map serves all, or the share is 0, and the report says so.
     pub fade: bool,
     /// Pixels that a texel may measure for more maps not to pay, 0 (use all of them) to 16. Shadow edges are off by
     /// half of it.
@@ -101,8 +99,9 @@ impl DepthSplits {
     }
 
     /// The first map ends at eye depth `first`, the last one at `far`, and each map between them is as many times as
-    /// deep as the one before: `first (far/first)^(i/(maps − 1))`. Numbers that are not 0 < first ≤ far give planes
-    /// that `fit` refuses.
+    /// deep as the one before: `first (far/first)^(i/(maps − 1))`. Of other numbers than
+    /// 0 < first ≤ far, `fit` refuses what does not ascend; a single plane may be anywhere, and is left out beyond what
+    /// is in view.
     ///
     /// Bevy's cascades are `exponential(4, 10.0, 150.0)` with `select: Select::Depth`, `blend: 0.2` (of a cascade's
     /// length here, of its far end there), `enough: 0.0`, [`Stabilise::SnapTexels`](crate::Stabilise::SnapTexels), and
@@ -119,17 +118,13 @@ impl DepthSplits {
 
     /// Checks its numbers.
     pub(crate) fn validate(&self) -> Result<(), FitError> {
-        let within = |field, value: f32, low: f64, high: f64, legal| {
-            let value = finite(field, f64::from(value))?;
-            if (low..=high).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
-        };
-        within("split.maps", f32::from(self.maps), 1.0, MAX_VIEWS as f64, "1 to 8")?;
-        within("split.blend", self.blend, 0.0, MOST_BLEND, "0 to 0.5")?;
-        within("split.enough", self.enough, 0.0, MOST_PIXELS, "0 to 16")?;
+        within("split.maps", f32::from(self.maps), [1.0, MAX_VIEWS as f64], "1 to 8")?;
+        within("split.blend", self.blend, [0.0, MOST_BLEND], "0 to 0.5")?;
+        within("split.enough", self.enough, [0.0, MOST_PIXELS], "0 to 16")?;
         match &self.scheme {
             Scheme::Practical { lambda, offset } => {
-                within("split.scheme.lambda", *lambda, 0.0, 1.0, "0 to 1")?;
-                within("split.scheme.offset", *offset, -LARGEST_OFFSET, LARGEST_OFFSET, "-1e15 to 1e15")
+                within("split.scheme.lambda", *lambda, [0.0, 1.0], "0 to 1")?;
+                within("split.scheme.offset", *offset, [-LARGEST, LARGEST], "-1e15 to 1e15")
             }
             Scheme::Manual(depths) => {
                 let read = &depths[..usize::from(self.maps) - 1];

@@ -39,7 +39,7 @@ use super::depth::{MAX_PLANES, Scheme, planes as planes_of};
 use super::profile::{Profile, Section};
 use crate::camera::Camera;
 use crate::math::search::valley;
-use crate::scene::DepthRange;
+use crate::scene::{DepthRange, ENOUGH_SAMPLES};
 
 /// λ of the planes that the search begins with: between what is best with and without knowledge of what is seen.
 const START: f32 = 0.75;
@@ -54,9 +54,6 @@ const NEAR: f64 = 0.01;
 
 /// Classes of depth in which samples are counted. Fewer blur where things are; more are emptier than samples are many.
 const CLASSES: usize = 48;
-
-/// Samples that weigh as much as knowing nothing does, as in the warp's predictor.
-const ENOUGH_SAMPLES: f64 = 8.0;
 
 /// By which share of the sum other planes must be better than those of the frame before. At 0 planes leap from one
 /// valley to the next as soon as that is deeper by rounding; at 1 they never move, however wrong they have become.

@@ -43,11 +43,7 @@ use crate::focus::FocusBody;
 use crate::math::convex::MAX_VERTICES;
 use crate::math::homography::WarpFrame;
 use crate::math::search::{crossing, least, not_worse, roughly_least};
-
-/// Samples inside the body that weigh as much as the body does. Fewer trust single pixels; more ask for more samples
-/// than move the result. Measured: a few hundred samples should decide nearly alone; the body remains for what they
-/// have not seen.
-const ENOUGH_SAMPLES: f64 = 8.0;
+use crate::scene::ENOUGH_SAMPLES;
 
 /// What a strong warp costs beyond (1), as a share of the error: strengths that are too weak by half cost a few per
 /// cent, strengths too strong by half cost twice that. Measured: 0.2 gives away nothing in the mean, and the pictures
@@ -60,7 +56,7 @@ const RELUCTANCE: f64 = 0.2;
 const SPARED: f64 = 0.05;
 
 /// How near to that limit strengths are found, as a share of the error. More shows as steps when the camera moves.
-const CLOSE: f64 = 1e-6;
+const SPARED_CLOSE: f64 = 1e-6;
 
 /// Most samples that are asked whether maps hold them. More move strengths by less than they cost time.
 const MOST_ASKED: usize = 128;
@@ -255,7 +251,7 @@ impl Predictor {
         if !(served.error(own) > most) {
             return own;
         }
-        crossing(best, own, CLOSE * most, |strength| served.error(strength) - most)
+        crossing(best, own, SPARED_CLOSE * most, |strength| served.error(strength) - most)
     }
 
     /// A strength, limited to what is predicted to be no worse than `uniform`, the error without a warp.
@@ -265,8 +261,8 @@ impl Predictor {
 }
 
 /// u and c of the vertices of a body that a side line may go through: of those with c > 0 the ones that no other
-/// surpasses in c at no greater u, of those with c < 0 likewise. Where all lie on one side of the axis, all. O(vertices²)
-/// comparisons, for fewer divisions at each strength.
+/// surpasses in c at no greater u, of those with c < 0 likewise. Where all lie on one side of the axis, all.
+/// O(vertices²) comparisons, for fewer divisions at each strength.
 fn outermost(frame: &WarpFrame, sight: &Sight) -> ArrayVec<DVec2, MAX_VERTICES> {
     // Points before the top line are there by rounding.
     let place = |point: &DVec2| frame.coordinates(*point).max(DVec2::new(0.0, f64::NEG_INFINITY));

@@ -11,11 +11,8 @@ pub(crate) mod sight;
 pub mod trapezoid;
 pub(crate) mod window;
 
-use crate::error::{FitError, finite};
+use crate::error::{FitError, LARGEST, within};
 use crate::math::homography::STRONGEST;
-
-/// Distances of options, world units: as large as scenes may be.
-const LARGEST: f64 = 1e15;
 
 /// How the light's coordinates are laid out on a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -91,7 +88,6 @@ impl Warp {
             Self::Perspective { pull_back } => ("warp.pull_back", pull_back, LARGEST, "0 to 1e15"),
             _ => return Ok(()),
         };
-        let value = finite(field, f64::from(value))?;
-        if (0.0..=largest).contains(&value) { Ok(()) } else { Err(FitError::OutOfRange { field, value, legal }) }
+        within(field, value, [0.0, largest], legal)
     }
 }

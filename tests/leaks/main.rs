@@ -6,3 +6,4 @@ mod fence;
 mod planes;
 mod section;
 mod stack;
+mod warped;
