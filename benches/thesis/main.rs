@@ -58,20 +58,10 @@ fn run() -> Result<(), String> {
     let (harm, worst) = (claims::most_harm(&results.records)?, plus::worst(&results.records)?);
     let shown = [&harm, &worst];
     pictures::write(&programme, &mut results, &shown, &docs)?;
-    let meta = [
-        ("command", programme.command()),
-        ("commit", cli::commit()),
-        ("adapter", backend.adapter()),
-        ("date", cli::now()),
-        ("took", took(start, results.traced)),
-    ];
+    let arguments: &[&str] = if programme.quick { &["--quick"] } else { &[] };
+    let mut meta = cli::provenance("thesis", arguments, backend.adapter(), start);
+    meta.extend((results.traced > 0).then(|| ("truths traced in that time", results.traced.to_string())));
     write_whole(&docs.join("THESIS.md"), page::page(&meta, &results, shown)?.as_bytes())?;
     println!("{}", docs.join("THESIS.md").display());
     Ok(())
-}
-
-/// How long it took, and whether truths had to be traced first.
-fn took(start: Instant, traced: usize) -> String {
-    let seconds = start.elapsed().as_secs_f64();
-    if traced == 0 { format!("{seconds:.0} s") } else { format!("{seconds:.0} s, {traced} truths traced among them") }
 }

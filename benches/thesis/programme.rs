@@ -1,7 +1,5 @@
 //! What is photographed: techniques as the thesis has them, its scenes, and the shared cases.
 
-use std::path::{Path, PathBuf};
-
 use antumbra::lab::comparison::Assignment;
 use antumbra::lab::subject::case_of;
 use antumbra::lab::viewpoints::thesis_viewpoints;
@@ -187,13 +185,6 @@ impl Programme {
         if self.quick { turns.min(TURNS_QUICK) } else { turns }
     }
 
-    /// The command line that does this again.
-    pub(crate) fn command(&self) -> String {
-        let scenes = if shared_scenes().is_some() { "ANTUMBRA_SCENES=<folder> " } else { "" };
-        let profile = if cfg!(debug_assertions) { "test" } else { "bench" };
-        format!("{scenes}cargo {profile} --bench thesis{}", if self.quick { " -- --quick" } else { "" })
-    }
-
     /// The thesis's scenes.
     pub(crate) fn built_in(&self) -> Result<Vec<Assignment>, String> {
         let of = |scene: &str| {
@@ -207,18 +198,8 @@ impl Programme {
 
     /// The cases beside the folder of scenes; none without one.
     pub(crate) fn shared(&self) -> Result<Vec<Assignment>, String> {
-        let Some(scenes) = shared_scenes() else { return Ok(Vec::new()) };
-        let folder = scenes.join("../cases");
-        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-        paths.retain(|path| path.extension().is_some_and(|found| found == "json"));
-        paths.sort();
-        let kept = if self.quick { 2 } else { paths.len() };
-        paths.iter().take(kept).map(|path| Assignment::of_case(path)).collect()
+        let mut all = Assignment::shared()?;
+        all.truncate(if self.quick { 2 } else { all.len() });
+        Ok(all)
     }
-}
-
-/// The folder of shared scenes, where one is named.
-fn shared_scenes() -> Option<PathBuf> {
-    std::env::var_os("ANTUMBRA_SCENES").map(|scenes| Path::new(&scenes).to_owned())
 }
