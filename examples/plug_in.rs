@@ -58,6 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     draw_casters(&mut encoder, &maps, &frame, &cast, &world);
     engine.draw(&mut encoder, &shade, &maps, &world);
     engine.queue.submit([encoder.finish()]);
+    std::fs::create_dir_all("target")?;
     engine.save("target/plug_in.png")?;
     println!("target/plug_in.png: {} triangles, {} KiB of shadow map", world.vertices / 3, maps.bytes() / 1024);
     Ok(())
