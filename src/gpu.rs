@@ -60,6 +60,7 @@ mod error;
 mod eye_blur;
 mod layout;
 mod prefilter;
+mod resources;
 
 use arrayvec::ArrayVec;
 
@@ -68,12 +69,13 @@ pub use layout::{caster_layout, layout_entries};
 pub use prefilter::{supported, texture_format};
 pub use wgpu;
 
-use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowUniforms, ShadowView, ViewUniforms, WgslKey};
+use crate::frame::{MAX_VIEWS, ShadowFrame, ShadowView, WgslKey};
 use crate::scene::MapBudget;
 use crate::texel::Texel;
 use clear::{TileClear, limit_to, tile_of};
 use layout::{CASTER_BYTES, bind_entries, caster_bind_group, map_dimension, most_views, uniform_bytes};
 use prefilter::Prefilter;
+use resources::{attachment, depth_texture, lit_uniforms, sampler};
 
 /// Format of a depth map: the precision that the bias is computed for.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -386,69 +388,7 @@ pub fn depth_stencil_state() -> wgpu::DepthStencilState {
     }
 }
 
-/// `COPY_SRC` costs nothing and lets engines and tests read the map back.
-fn depth_texture(device: &wgpu::Device, label: Option<&str>, side: u32, layers: u32) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label,
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: layers },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
-}
-
 /// Layers of the maps: never none, for a shader has to read something.
 fn layers(key: WgslKey, map: MapBudget) -> u32 {
     (most_views(key) as u32).min(map.layers).min(map.views).max(1)
-}
-
-/// One layer, to be drawn into.
-fn attachment(texture: &wgpu::Texture, label: Option<&str>, layer: u32) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        label,
-        dimension: Some(wgpu::TextureViewDimension::D2),
-        base_array_layer: layer,
-        array_layer_count: Some(1),
-        ..Default::default()
-    })
-}
-
-/// Bilinear comparison: lit where the receiver is not farther than the texel. Moments are interpolated, between levels
-/// too, where their format allows it.
-fn sampler(label: Option<&str>, key: WgslKey) -> wgpu::SamplerDescriptor<'_> {
-    let linear = !matches!(key.texel, Texel::Moments(moments) if !moments.linear);
-    let filter = if linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
-    wgpu::SamplerDescriptor {
-        label,
-        address_mode_u: wgpu::AddressMode::ClampToEdge,
-        address_mode_v: wgpu::AddressMode::ClampToEdge,
-        address_mode_w: wgpu::AddressMode::ClampToEdge,
-        mag_filter: filter,
-        min_filter: filter,
-        mipmap_filter: if linear { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
-        compare: (key.texel == Texel::Depth).then_some(wgpu::CompareFunction::LessEqual),
-        ..Default::default()
-    }
-}
-
-/// A uniform buffer in which nothing is shadowed.
-fn lit_uniforms(device: &wgpu::Device, label: Option<&str>) -> wgpu::Buffer {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label,
-        size: size_of::<ShadowUniforms>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: true,
-    });
-    let lit = ShadowUniforms { views: [ViewUniforms::LIT; MAX_VIEWS], counts: [0; 4] };
-    // A buffer mapped at creation is mapped; a lost device leaves it unwritten, and draws nothing anyway.
-    if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
-        mapped.copy_from_slice(bytemuck::bytes_of(&lit));
-    }
-    buffer.unmap();
-    buffer
 }

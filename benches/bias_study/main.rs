@@ -30,7 +30,11 @@ pub(crate) fn save(name: &str, mask: &[u8], truth: &Truth) -> Result<(), String>
     Ok(())
 }
 
-fn main() -> Result<(), String> {
+fn main() {
+    cli::bench(run);
+}
+
+fn run() -> Result<(), String> {
     let start = Instant::now();
     let sweep = gz::sweep()?;
     let pictures = matrix::pictures()?;

@@ -69,7 +69,11 @@ fn csv(records: &[Record]) -> String {
     text
 }
 
-fn main() -> Result<(), String> {
+fn main() {
+    cli::bench(run);
+}
+
+fn run() -> Result<(), String> {
     let start = Instant::now();
     let quick = std::env::args().any(|argument| argument == "--quick");
     let gpu = Gpu::new().map_err(|error| error.to_string())?;

@@ -175,7 +175,11 @@ fn sweep(
     Ok(())
 }
 
-fn main() -> Result<(), String> {
+fn main() {
+    cli::bench(run);
+}
+
+fn run() -> Result<(), String> {
     let start = Instant::now();
     let only = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
     let (mut backend, _) = Backend::open(BackendChoice::Cpu)?;

@@ -28,14 +28,7 @@ use crate::measure::Programme;
 use crate::record::Sweep;
 
 fn main() {
-    // `cargo test --benches` only wants to know that this builds and starts.
-    if std::env::args().any(|argument| argument == "--test") {
-        return;
-    }
-    if let Err(problem) = run() {
-        eprintln!("error: {problem}");
-        std::process::exit(2);
-    }
+    cli::bench(run);
 }
 
 fn run() -> Result<(), String> {

@@ -46,16 +46,9 @@ const QUICK_TURNS: u32 = 3;
 const MORE: [&str; 2] = ["total_q1_ms", "total_q3_ms"];
 
 fn main() {
-    // `cargo test --benches` only wants to know that this builds and starts.
-    if std::env::args().any(|argument| argument == "--test") {
-        return;
-    }
     let quick = std::env::args().any(|argument| argument == "--quick");
     let only = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
-    if let Err(problem) = run(quick, only.as_deref()) {
-        eprintln!("error: {problem}");
-        std::process::exit(2);
-    }
+    cli::bench(|| run(quick, only.as_deref()));
 }
 
 fn run(quick: bool, only: Option<&str>) -> Result<(), String> {

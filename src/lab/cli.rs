@@ -134,6 +134,18 @@ pub fn commit() -> String {
     }
 }
 
+/// Runs a bench; a problem is printed, and ends the process with 2. `cargo test --benches` only wants to know that it
+/// builds and starts.
+pub fn bench(run: impl FnOnce() -> Result<(), String>) {
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    if let Err(problem) = run() {
+        eprintln!("error: {problem}");
+        std::process::exit(2);
+    }
+}
+
 /// The command line that runs a bench again, with what it saw of the environment.
 #[must_use]
 pub fn bench_command(bench: &str, arguments: &[&str]) -> String {

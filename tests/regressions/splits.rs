@@ -1,28 +1,16 @@
 //! Bugs of several maps, verbatim: the input that showed each, and one sentence.
 
 use antumbra::{
-    Aabb, Camera, DepthRange, DepthSplits, FitInput, Light, MapBudget, Object, Part, Remix, Scene, Scheme, ShadowFrame,
-    ShadowTechnique, Share, Split, Stabilise, Warp, Why, techniques,
+    Camera, DepthRange, DepthSplits, FitInput, Light, MapBudget, Object, Part, Remix, Scene, Scheme, ShadowTechnique,
+    Share, Split, Stabilise, Warp, Why, techniques,
 };
 use glam::{DMat4, DVec3};
 
-fn room(half: f64) -> Aabb {
-    Aabb::new(DVec3::splat(-half), DVec3::splat(half))
-}
+use crate::{room, whys};
 
+/// As for one map, with four.
 fn input(scene: Scene) -> FitInput {
-    FitInput {
-        camera: Camera::perspective(DMat4::IDENTITY, 0.8, 1.5, 0.1, 100.0),
-        light: Light::Directional { travel: DVec3::new(0.6, -0.8, 0.0) },
-        scene,
-        map: MapBudget { side: 1024, layers: 4, views: 4 },
-        origin: DVec3::ZERO,
-        previous: None,
-    }
-}
-
-fn whys(frame: &ShadowFrame) -> Vec<(Part, Why)> {
-    frame.left_out.iter().map(|cut| (cut.part, cut.why)).collect()
+    FitInput { map: MapBudget { side: 1024, layers: 4, views: 4 }, ..crate::input(scene) }
 }
 
 /// Views that do not exist were said to serve: where nothing casts, there is none.

@@ -1,5 +1,7 @@
 //! Bugs, verbatim: the input that showed each, and one sentence.
 
+mod splits;
+
 use antumbra::{
     Aabb, Bias, Camera, Content, DepthRange, Encoding, FitError, FitInput, Light, MapBudget, MomentFormat, MomentKind,
     Moments, Object, Part, Pcf, Prefilter, Radius, Remix, Scene, ShadowFrame, ShadowTechnique, Stabilise, Why,
